@@ -4,7 +4,7 @@ A track lacks each wall between two corners (`camgeo.capabilities.cylindrical.cr
 floor to the blank. What is left between two of them is a patch, whose grid has its rows on the same cylinders as all
 others, and whose first and last column lie on such lines. Between a line and the first upright column the columns go
 over from one to the other, so that a cell takes up more shaft angle there; the bound of a cell holds wherever its
-corners lie in it. A break of the acceleration has to be a column: patches are not made where one lies beneath a line.
+corners lie in it. A break of the acceleration has to be a column, so that none may lie beneath a line.
 """
 
 from __future__ import annotations
@@ -16,7 +16,7 @@ import numpy as np
 
 from camgeo.capabilities.cylindrical.bends import bends
 from camgeo.capabilities.cylindrical.crossings import lost_of
-from camgeo.capabilities.cylindrical.grid import breaks_of, grid_of
+from camgeo.capabilities.cylindrical.grid import SAME, grid_of
 from camgeo.capabilities.cylindrical.sheet import points_of
 from camgeo.curve.curve import CurveError
 from camgeo.fit.nodes import ToleranceError
@@ -34,6 +34,7 @@ if TYPE_CHECKING:
 GUARD = 0.5  # of a column, least width of a cell beside a line
 ROUNDS, MORE_ROWS = 7, 1.5
 FINER = (1, 2, 3, 4)  # times as many columns beside a line
+BESIDE = 1e-3  # rad to either side of an edge, where a break would leave a sliver
 STEP_SEEN = 1e-9  # of the acceleration's range: a smaller step is none
 
 
@@ -73,11 +74,25 @@ def kept_between(lost: Sequence[Lost], r: float, period: float) -> list[tuple[fl
     return found
 
 
+def demand_smooth(design: DrumDesign) -> None:
+    """Raise CurveError where the acceleration jumps on a corner's line, between floor and blank."""
+    law, period = design.law, design.recipe.period
+    knots = np.asarray(law.breaks, dtype=np.float64)
+    jump = np.abs(law.derivatives(knots, 2, 1)[2] - law.derivatives(knots, 2, -1)[2])
+    knots = knots[jump > STEP_SEEN * max(float(np.abs(law.derivatives(knots, 2, 1)[2]).max(initial=0.0)), 1.0)]
+    for corner in corners_of(design.crossings):
+        for line in (corner.first, corner.second):
+            low, high = float(line.min()) - BESIDE, float(line.max()) + BESIDE
+            under = np.mod(knots - low, period) < high - low
+            if under.any():
+                raise CurveError("the acceleration jumps on the edge of a crossing", float(knots[np.argmax(under)]))
+
+
 def patches_of(design: DrumDesign, tolerance: float) -> Patches:
     """The patches of a groove that crosses itself, whose triangles are proved to lie within a tolerance, mm.
 
     The distance of an edge between two flanks from its own, which is measured half way between rows, is within it, too.
-    Raises ToleranceError where it cannot be held, CurveError where a break of the acceleration is beneath an edge.
+    Raises ToleranceError where it cannot be held.
     """
     ends = design.recipe.floor, design.recipe.radius
     rows = np.linspace(*ends, 2)
@@ -106,9 +121,8 @@ def _cut(
             last = last + flank.period * np.round((first[-1] - last[-1]) / flank.period + 0.5)
             if last[-1] < first[-1]:
                 last = last + flank.period
-            _demand_whole(flank, first, last)
             for finer in FINER:
-                theta = _columns(grid, first, last, flank.period, finer)
+                theta = _columns(grid, flank, (first, last), finer)
                 off = _cells_off(flank, theta, rows)
                 if off <= tolerance:
                     break
@@ -137,25 +151,17 @@ def _line(at: tuple[Corner, int], rows: Array, period: float) -> Array:
     return np.asarray(theta - period * math.floor(theta[-1] / period))
 
 
-def _demand_whole(flank: Flank, first: Array, last: Array) -> None:
-    """Raise CurveError where the acceleration jumps between the ends of a line on floor and blank."""
-    knots = np.asarray(flank.law.breaks, dtype=np.float64)
-    if not knots.size:
-        return
-    jump = np.abs(flank.law.derivatives(knots, 2, 1)[2] - flank.law.derivatives(knots, 2, -1)[2])
-    size = float(np.abs(flank.law.derivatives(breaks_of(flank), 2, 1)[2]).max(initial=0.0))
-    for knot in knots[jump > STEP_SEEN * max(size, 1.0)].tolist():
-        for line in (first, last):
-            low = float(line.min())
-            if (knot - low) % flank.period < float(line.max()) - low:
-                raise CurveError("the acceleration jumps where two tracks cross", knot)
+def _columns(grid: Grid, flank: Flank, lines: tuple[Array, Array], finer: int) -> Array:
+    """Shaft angles (rows, columns), rad, from one line to another: upright columns of the grid between the two.
 
-
-def _columns(grid: Grid, first: Array, last: Array, period: float, finer: int) -> Array:
-    """Shaft angles (rows, columns), rad, from one line to another: upright columns of the grid between the two."""
+    Those at breaks of the motion are among them however near they are to a line.
+    """
+    (first, last), period = lines, flank.period
     at = np.concatenate([grid.theta[:-1] + turn * period for turn in (-1, 0, 1, 2)])
     step = np.append(np.diff(at), at[1] - at[0])
-    upright = at[(at > first.max() + GUARD * step) & (at < last.min() - GUARD * step)]
+    broken = np.abs(np.remainder(at[:, None] - flank.law.breaks + 0.5 * period, period) - 0.5 * period) < SAME
+    room = np.where(broken.any(axis=1), 0.5 * BESIDE, GUARD * step)
+    upright = at[(at > first.max() + room) & (at < last.min() - room)]
     if not upright.size:
         count = finer * max(2, math.ceil(float((last - first).max()) / float(step.min())))
         share = np.linspace(0.0, 1.0, min(count, 400) + 1)

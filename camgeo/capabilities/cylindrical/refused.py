@@ -10,7 +10,7 @@ import numpy as np
 from camgeo.capabilities.cylindrical.crossings import lost_of
 from camgeo.capabilities.cylindrical.guide import Arm
 from camgeo.capabilities.cylindrical.keys import End, Rib
-from camgeo.capabilities.cylindrical.patches import kept_between
+from camgeo.capabilities.cylindrical.patches import demand_smooth, kept_between
 from camgeo.capabilities.cylindrical.shoe import demand_led
 from camgeo.capabilities.cylindrical.undercut import CutError, tips
 from camgeo.common.rounding import downward, upward
@@ -49,14 +49,16 @@ def demand_sound(design: DrumDesign) -> None:
 
 def _demand_tracks(design: DrumDesign) -> None:
     """Raise RecipeErrors for tracks that run into one another, and for a follower that does not pass them."""
+    remedy = "give more lift a turn, shorter rests, or a narrower follower"
     try:
         _ = design.crossings
         for name in design.flanks:
             for r in (design.recipe.floor, design.recipe.radius):
                 kept_between(lost_of(design.crossings, name), r, design.recipe.period)
+        remedy = "let segments meet a few degrees earlier or later, or take laws that join without a step"
+        demand_smooth(design)
     except CurveError as error:
         problem = f"{error}, near {_degrees(design, error.parameter):.6g} degrees"
-        remedy = "give more lift a turn, shorter rests, or a narrower follower"
         raise design.error("cam.motion", problem, remedy) from error
     demand_led(design)
 
