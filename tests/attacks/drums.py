@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 from capabilities.cylindrical.made_drums import LED, random_drum
 from capabilities.cylindrical.positions import envelope
+from capabilities.cylindrical.wound_drums import Pins, random_track
 from support.heavy import ezdxf
 
 from attacks.outcome import Attack
@@ -38,6 +39,17 @@ SLIPS = (
     ("taper: ", "taper: 8"),
     ("taper: axis", "taper: apex"),
 )
+TURN_SLIPS = (
+    ("turns: ", "turns: 1"),
+    ("turns: ", "truns: "),
+    ("kind: shoe", "kind: boat"),
+    ("kind: shoe, ", ""),
+    ("width: ", "width: 9"),
+    ("length: ", "length: 1e-7"),
+    ("blend: [", "blend: [9"),
+    ("depth: ", "depth: 4"),
+)
+"""Slips in tracks of several turns."""
 
 
 def turned(rng: Random, number: int) -> Attack:
@@ -100,6 +112,40 @@ def milled(rng: Random, number: int) -> Attack:
     options = ", ".join(f"{key}: {value}" for key, value in own.items())
     text = text.replace("files: [stl]", f"files: [{{gcode: {{{options}}}}}]")
     return Attack(f"milled drum {number}", ("export", "drum.yaml"), {"drum.yaml": text.encode()}, (0, 2))
+
+
+def wound(rng: Random, number: int) -> Attack:
+    """A random screw or spiral of several turns: its points are where pins are, or it is refused with a reason."""
+    rows, text = random_track(rng)
+    if rng.random() < 0.3:
+        old, new = rng.choice(TURN_SLIPS)
+        text = text.replace(old, new, 1)
+    text = text.replace("files: [stl]", "files: [{csv: {as: flank, step: 15}}]")
+
+    def judge(done: Done, folder: Path) -> list[str]:
+        (table, *_) = [*folder.rglob("*.csv"), None]
+        if done.status or table is None:
+            return []
+        return strayed(table, text, Pins(rows, 0.5 * number_after(text, "width: ")))
+
+    return Attack(f"wound drum {number}", ("export", "drum.yaml"), {"drum.yaml": text.encode()}, (0, 1, 2), judge)
+
+
+def strayed(table: Path, text: str, pins: Pins) -> list[str]:
+    """Rows of flank points that no pin touches, or that a pin has cut away."""
+    names = table.read_text("utf-8").split("\n", 1)[0].split(",")
+    rows = np.genfromtxt(table, delimiter=",", skip_header=1)
+    level, mirror = number_after(text, "pitch_height: "), -1.0 if "rotation: ccw" in text else 1.0
+    found = []
+    for name in ("lower", "upper"):
+        r, phi, z = (rows[:, names.index(f"{name}_{key}")] for key in ("r_mm", "phi_deg", "z_mm"))
+        there = np.isfinite(r)
+        angle = mirror * np.radians(phi[there])
+        points = np.column_stack([r[there] * np.cos(angle), r[there] * np.sin(angle), z[there]])
+        off = float(np.abs(pins.away(points, level).min(axis=1)).max())
+        if off > 1e-3:
+            found.append(f"a point of the {name} flank is {off:.3g} mm off the pins")
+    return found
 
 
 def slipped(rng: Random, number: int) -> Attack:

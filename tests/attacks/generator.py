@@ -77,6 +77,7 @@ WAYS: tuple[Callable[[Random, int], Attack], ...] = (
     drums.turned,  # needs: cylindrical
     drums.stepped,  # needs: cylindrical
     drums.slipped,  # needs: cylindrical
+    drums.wound,  # needs: cylindrical
     drums.milled,  # needs: cylindrical, milling
 )
 """Ways to attack, in turn."""

@@ -60,7 +60,8 @@ def test_values_stand_where_their_fields_say(name: str) -> None:
     for field in fields.values():
         if "before" not in field:
             assert text[field["start"] : field["end"]].strip("'\"") == field["text"]
-    assert {"cam.motion[0].law", "cam.motion[1].law", "cam.motion.segments[0].law"} & set(fields)
+    laws = {"cam.motion[0].law", "cam.motion[1].law", "cam.motion.segments[0].law", "cam.motion[0].law.uniform.blend"}
+    assert laws & set(fields)
     assert live.more(name, text)["more"]
 
 
@@ -127,6 +128,7 @@ def test_the_solid_of_a_kind_is_closed(name: str) -> None:
     deep |= {"plate-endless": 8.0, "plate-feed": 12.0, "plate-groove": 16.0}  # needs: linear
     deep |= {"drum-end": 60.0, "drum-groove": 80.0, "drum-rib": 4.2 * 25.4}  # needs: cylindrical
     deep |= {"drum-shortened": 65.0, "drum-arm": 90.0, "drum-cone": 80.0}  # needs: cylindrical
+    deep |= {"drum-screw": 88.0, "drum-spiral": 88.0}  # needs: cylindrical
     deep |= {"drum-milled": 70.0}  # needs: cylindrical, milling
     assert high[2] - low[2] == pytest.approx(deep[name], rel=0.2 if name.endswith("-end") else 1e-6)
 

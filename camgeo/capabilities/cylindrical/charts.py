@@ -10,9 +10,10 @@ from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
+from camgeo.capabilities.cylindrical.crossings import sampled
 from camgeo.capabilities.cylindrical.figures import carried_from, outer_end
-from camgeo.capabilities.cylindrical.shells import PLACES, height, shell
-from camgeo.capabilities.cylindrical.turning import LINES, rollers, sense
+from camgeo.capabilities.cylindrical.shells import PLACES, height, runs, shell
+from camgeo.capabilities.cylindrical.turning import LINES, outline, rollers, sense
 from camgeo.measures.units import UNIT_NAMES
 from camgeo.recipe.figures import PRESSURE_ANGLE
 
@@ -21,7 +22,7 @@ if TYPE_CHECKING:
 
     from camgeo.capabilities.cylindrical.design import DrumDesign
     from camgeo.capabilities.cylindrical.flank import Flank
-    from kin.numeric.arrays import Array, Indices, Mask
+    from kin.numeric.arrays import Array, Mask
 
 TURN = 2.0 * math.pi
 WIDTH, LEFT, RIGHT, TOP, FOOT = 420.0, 46.0, 10.0, 8.0, 30.0  # px of a chart, and of its margins
@@ -54,15 +55,15 @@ def development(design: DrumDesign) -> str:
 
     parts = []
     for low, high in shell(design, blank).bands:
-        outline = np.concatenate([np.column_stack([x, y(low)]), np.column_stack([x, y(high)])[::-1]])
-        parts.append(f'<path class="metal" d="{_path(outline)}Z"/>')
+        bottom, top = np.column_stack([x, y(low)]), np.column_stack([x, y(high)])
+        there = runs(np.isfinite(bottom[:, 1] + top[:, 1]))
+        parts += [f'<path class="metal" d="{_path(np.concatenate([bottom[k], top[k][::-1]]))}Z"/>' for k in there]
     for radius, look in ((blank, "line"), (inner, "line inner")):
-        parts += [
-            f'<path class="{look}" d="{_path(np.column_stack([x, y(height(design, name, radius))]))}"/>'
-            for name in design.flanks
-        ]
+        lines = [line for name in design.flanks for line in _flanks(design, name, radius)]
+        parts += [f'<path class="{look}" d="{_path(np.column_stack([x, TOP + tall - scale * z]))}"/>' for z in lines]
     more = 0.0 if recipe.guide.radial else BEYOND  # beside a radius a path begins elsewhere than the turn
-    theta = np.linspace(-more, TURN + more, LINES + 1)
+    turns = recipe.turns
+    theta = np.linspace(-more, recipe.period + more, LINES * turns + 1)
     short = lost_from(design, theta) > inner
     sections = "".join(
         f'<path class="section{look}" d="{_path(_section(design, radius))}Z"/>'
@@ -74,19 +75,48 @@ def development(design: DrumDesign) -> str:
         share = theta / TURN + beside
         share = share if sense(design) > 0.0 else 1.0 - share
         points = np.column_stack([LEFT + FIELD * share, TOP + tall - scale * z])
-        parts.append(f'<path class="line pitch" d="{_path(points)}"/>')
-        parts += [f'<path class="line lost" d="{_path(points[run])}"/>' for run in _runs(short) if run.size > 1]
         x, y = np.array([np.interp(0.0, theta, row) for row in points.T]).tolist()
+        pieces = [points]
+        if turns > 1:  # every turn from the chart's own edge on
+            points[:, 0] = LEFT + FIELD * np.mod(share, 1.0)
+            pieces = np.split(points, np.flatnonzero(np.abs(np.diff(points[:, 0])) > 0.5 * FIELD) + 1)
+        parts += [f'<path class="line pitch" d="{_path(piece)}"/>' for piece in pieces if len(piece) > 1]
+        parts += [f'<path class="line lost" d="{_path(points[run])}"/>' for run in runs(short) if run.size > 1]
         shown += "".join(
             f'<g class="roller-at" transform="translate({x + FIELD * (k - 1):.2f} {y:.2f})">{sections}</g>'
             for k in range(3)
         )
+    parts += [
+        f'<circle class="crossing" cx="{LEFT + FIELD * place:.2f}" cy="{TOP + tall - scale * up:.2f}" r="4"/>'
+        for place, up in crossed(design)
+    ]
     clip = f'<clipPath id="flat"><rect x="{LEFT}" y="{TOP}" width="{FIELD}" height="{tall:.1f}"/></clipPath>'
     field = f'<rect class="field" x="{LEFT}" y="{TOP}" width="{FIELD}" height="{tall:.1f}"/>'
-    told = f"the drum unrolled over one turn: {', '.join(design.flanks)} flank and the path of the roller's axis"
+    over = f" with the tracks of all {turns}" if turns > 1 else ""
+    told = f"the drum unrolled over one turn{over}: {', '.join(design.flanks)} flank and the path of the roller's axis"
     axes = _axes(design, tall, (0.0, recipe.height), "angle on the drum, °", "z")
     body = f'{clip}{field}<g clip-path="url(#flat)">{"".join(parts)}{shown}</g>{axes}'
     return _chart("development", tall, told, body)
+
+
+def _flanks(design: DrumDesign, name: str, radius: float) -> list[Array]:
+    """Heights (PLACES + 1,), mm, of a flank on a cylinder over each of its turns."""
+    if design.recipe.turns == 1:
+        z = height(design, name, radius)
+        return [np.append(z, z[0])]
+    rows = sampled(design.flanks[name], radius)[0]
+    part = rows[:: rows.size // design.recipe.turns // PLACES]
+    lines = np.column_stack([part.reshape(-1, PLACES), np.roll(part, -PLACES)[::PLACES]])
+    return list(lines if design.recipe.rotation == "cw" else lines[:, ::-1])
+
+
+def crossed(design: DrumDesign) -> list[tuple[float, float]]:
+    """Places of crossings: their share of the chart's width, and the height of the roller's axis, mm."""
+    if not design.crossings:
+        return []
+    at = np.array([crossing.first for crossing in design.crossings])
+    share = np.mod(sense(design) * at / TURN, 1.0)
+    return list(zip(share.tolist(), design.flanks["lower"].pose(at).z.tolist(), strict=True))
 
 
 def lost_from(design: DrumDesign, theta: Array) -> Array:
@@ -102,6 +132,8 @@ def flat_axis(design: DrumDesign, flank: Flank, theta: Array) -> tuple[Array, Ar
 
 def _section(design: DrumDesign, radius: float) -> Array:
     """The roller cut by a cylinder, unrolled, in px from the place of its axis."""
+    if design.recipe.roller.shoe is not None:
+        return outline(design.recipe.roller) * (flat_scale(design), -flat_scale(design))
     roller = design.recipe.roller.size(radius)
     t = np.arange(ROUND) * (TURN / ROUND)
     across = np.arcsin(np.minimum(roller / radius, 1.0) * np.sin(t)) * (FIELD / TURN)
@@ -126,7 +158,7 @@ class AngleMap(NamedTuple):
 def angle_map(design: DrumDesign) -> AngleMap:
     """The map at the middles of its cells."""
     roller = design.recipe.roller
-    theta = np.asarray((np.arange(COLUMNS) + 0.5) * (TURN / COLUMNS), dtype=np.float64)
+    theta = np.asarray((np.arange(COLUMNS) + 0.5) * (design.recipe.period / COLUMNS), dtype=np.float64)
     rho = np.asarray(roller.inner + (np.arange(ROWS) + 0.5) * (roller.outer - roller.inner) / ROWS, dtype=np.float64)
     angle = np.degrees([_steepness(design, theta, np.full_like(theta, place)) for place in rho])
     outer = np.min([outer_end(design, name, theta) for name in design.flanks], axis=0)
@@ -141,7 +173,7 @@ def _steepness(design: DrumDesign, theta: Array, rho: Array) -> Array:
 
 def greatest(design: DrumDesign) -> tuple[float, float, float]:
     """Greatest pressure angle of what carries and its shaft angle, degrees, and its distance along the roller, mm."""
-    theta = np.linspace(0.0, TURN, COLUMNS * ROWS + 1)
+    theta = np.linspace(0.0, design.recipe.period, COLUMNS * ROWS + 1)
     begin = lost_from(design, theta)
     outer = np.min([outer_end(design, name, theta) for name in design.flanks], axis=0)
     rho = np.concatenate([begin, outer])
@@ -176,16 +208,17 @@ def pressure_map(design: DrumDesign) -> str:
         parts.append(f'<path class="cell none" d="{_cells(found.short)}"><title>undercut</title></path>')
     field = f'<rect class="field" x="{LEFT}" y="{TOP}" width="{FIELD}" height="{HIGH}"/>'
     roller = recipe.roller
-    x = LEFT + FIELD * at / 360.0
+    whole = 360.0 * recipe.turns
+    x = LEFT + FIELD * at / whole
     y = TOP + HIGH * (roller.outer - rho) / (roller.outer - roller.inner)
-    side = "end" if at > 180.0 else "start"
-    shift = -8.0 if at > 180.0 else 8.0
+    side = "end" if at > 0.5 * whole else "start"
+    shift = -8.0 if at > 0.5 * whole else 8.0
     mark = (
         f'<circle class="greatest" cx="{x:.1f}" cy="{y:.1f}" r="4"/>'
         f'<text class="told" x="{x + shift:.1f}" y="{y - 7.0:.1f}" text-anchor="{side}">{most:.2f}°</text>'
     )
     cursor = f'<g class="cursor" transform="translate({LEFT} 0)"><line y1="{TOP}" y2="{TOP + HIGH}"/></g>'
-    axes = _axes(design, HIGH, (roller.inner, roller.outer), "shaft angle, °", "radius")
+    axes = _axes(design, HIGH, (roller.inner, roller.outer), "shaft angle, °", "radius", whole=whole)
     told = (
         f"pressure angle over shaft angle and radius, at most {most:.2f} degrees at a shaft angle of {at:.1f} degrees"
     )
@@ -223,7 +256,7 @@ def _cells(cells: Mask) -> str:
     wide, tall = FIELD / COLUMNS, HIGH / ROWS
     text = []
     for row, line in enumerate(cells):
-        for run in _runs(line):
+        for run in runs(line):
             x, y = LEFT + wide * run[0], TOP + HIGH - tall * (row + 1)
             text.append(f"M{x:.1f} {y:.1f}h{wide * run.size:.1f}v{tall:.1f}h{-wide * run.size:.1f}z")
     return "".join(text)
@@ -232,17 +265,13 @@ def _cells(cells: Mask) -> str:
 # --- of both ----------------------------------------------------------------------------------------------------------
 
 
-def _runs(good: Mask) -> list[Indices]:
-    """Indices of true values, run by run."""
-    at = np.flatnonzero(good)
-    return [run for run in np.split(at, np.flatnonzero(np.diff(at) > 1) + 1) if run.size]
-
-
 def _path(points: Array) -> str:
     return "M" + "L".join(f"{x:.1f} {y:.1f}" for x, y in points.tolist())
 
 
-def _axes(design: DrumDesign, tall: float, ends: tuple[float, float], along: str, upright: str) -> str:
+def _axes(
+    design: DrumDesign, tall: float, ends: tuple[float, float], along: str, upright: str, *, whole: float = 360.0
+) -> str:
     """Degrees along a chart, and lengths between two ends, mm, up it."""
     low, high = ends
     mm, unit = design.recipe.mm, UNIT_NAMES[design.recipe.units]
@@ -251,7 +280,7 @@ def _axes(design: DrumDesign, tall: float, ends: tuple[float, float], along: str
     for k in range(5):
         x = LEFT + FIELD * k / 4.0
         parts.append(f'<line class="grid" x1="{x}" y1="{foot:.1f}" x2="{x}" y2="{foot + 4.0:.1f}"/>')
-        parts.append(f'<text x="{x}" y="{foot + 14.0:.1f}" text-anchor="middle">{90 * k}</text>')
+        parts.append(f'<text x="{x}" y="{foot + 14.0:.1f}" text-anchor="middle">{0.25 * whole * k:g}</text>')
     for value, y in ((low, foot), (high, TOP)):
         parts.append(f'<line class="grid" x1="{LEFT - 4.0}" y1="{y:.1f}" x2="{LEFT}" y2="{y:.1f}"/>')
         parts.append(f'<text x="{LEFT - 6.0}" y="{y + 3.5:.1f}" text-anchor="end">{value / mm:.4g}</text>')
@@ -270,6 +299,8 @@ def keys(design: DrumDesign) -> Sequence[str]:
     mm, unit = design.recipe.mm, UNIT_NAMES[design.recipe.units]
     blank, inner = f"{design.recipe.radius / mm:.6g} {unit}", f"{design.recipe.roller.inner / mm:.6g} {unit}"
     found = [f"Metal and full lines: on the blank, {blank}; dashed: at {inner}, where the roller begins to bear."]
-    if (lost_from(design, np.linspace(0.0, TURN, LINES + 1)) > design.recipe.roller.inner).any():
+    if design.crossings:
+        found.append("Rings: here tracks cross.")
+    if (lost_from(design, np.linspace(0.0, design.recipe.period, LINES + 1)) > design.recipe.roller.inner).any():
         found.append("Thick: here undercut takes away a part of the line of contact.")
     return found

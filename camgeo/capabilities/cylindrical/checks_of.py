@@ -7,11 +7,12 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from camgeo.capabilities.cylindrical.crossings import wall_between
 from camgeo.capabilities.cylindrical.development import radii
 from camgeo.capabilities.cylindrical.figures import at_angle, bears, steepest
 from camgeo.capabilities.cylindrical.flank import distance
 from camgeo.capabilities.cylindrical.keys import DEVELOPMENT, Groove, Rib
-from camgeo.measures.placed import Figure, figure_check, greatest_of, limit_checks
+from camgeo.measures.placed import Figure, figure_check, limit_checks
 from camgeo.measures.rule_remark import RuleRemark
 from camgeo.measures.units import in_units
 from camgeo.recipe.figures import LEAST_WALL, PRESSURE_ANGLE
@@ -22,7 +23,6 @@ if TYPE_CHECKING:
 
     from camgeo.capabilities.cylindrical.design import DrumDesign
 
-TURN = 2.0 * math.pi
 STEEP = 30.0  # degrees, by rule of thumb for a follower on a straight guide
 STEEP_ARM = 45.0
 ROUNDING = 1e-9  # mm: a wall that is less by no more holds
@@ -61,6 +61,10 @@ def walls(design: DrumDesign) -> list[tuple[float, str]]:
             found.append((flank.resting(low, recipe.radius), f"between the {word} and the lower face"))
         else:
             found.append((recipe.height - flank.resting(high, recipe.radius), f"between the {word} and the upper face"))
+    if recipe.turns > 1:
+        between = min(wall_between(design.flanks, r)[0] for r in (recipe.floor, recipe.radius))
+        if math.isfinite(between):
+            found.append((between, "between neighbouring turns of the groove"))
     if design.bore is not None:
         points = design.bore.outline.points
         reach = float(np.hypot(*points.T).max())
@@ -94,6 +98,11 @@ def remarks_on(design: DrumDesign, figures: Sequence[Figure]) -> tuple[RuleRemar
     if pressure is not None and bearable is not None and pressure.value > bearable:
         sentence = f"the contact's pressure reaches {pressure.value:.4g} N/mm^2, the materials bear {bearable:.4g}"
         remarks.append(RuleRemark("contact-pressure", pressure.value, bearable, pressure.unit, sentence, pressure.at))
+    twist, track = known.get("shoe-twist"), recipe.track
+    if twist is not None and isinstance(track, Groove) and twist.value > track.clearance:
+        shown, unit = in_units(recipe, twist.value, "mm")
+        sentence = f"the shoe needs {shown:.2g} {unit} of clearance, as its track is steeper at its inner end"
+        remarks.append(RuleRemark("shoe-twist", twist.value, track.clearance, "mm", sentence, twist.at))
     chosen = [each for request in recipe.export.files if request.as_ == DEVELOPMENT for each in radii(design, request)]
     walls_at = dict.fromkeys(radius for radius, pitch in chosen if not pitch)
     remarks += [] if any(design.tips.values()) else [_wrapped(design, radius) for radius in walls_at]
@@ -117,7 +126,7 @@ def wrapped_off(design: DrumDesign, radius: float) -> tuple[float, float, float]
                 return np.abs(flank.on(at_angle(flank, contact.phi, radius, theta), radius).z - contact.z)
 
             if abs(other - radius) > ROUNDING:
-                found.append((*greatest_of(off, TURN), other))
+                found.append((*design.greatest(off), other))
     value, at, other = max(found, default=(0.0, 0.0, radius))
     return value, other, at
 

@@ -7,16 +7,22 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from camgeo.capabilities.cylindrical.crossings import crossings_of
 from camgeo.capabilities.cylindrical.flank import Flank
+from camgeo.capabilities.cylindrical.grid import TURN
 from camgeo.capabilities.cylindrical.keys import Groove, Rib
 from camgeo.capabilities.cylindrical.sheet import cut_sheet, whole_sheet
 from camgeo.capabilities.cylindrical.undercut import cut_at, demand_regular, tips
 from camgeo.curve.curve import CurveError
+from camgeo.measures.placed import SEEK, greatest_of
 from camgeo.part.body import bore_of
 from kin.numeric.lengths import in_unit
 from kin.numeric.records import dataclass, replace
 
 if TYPE_CHECKING:
+    from collections.abc import Callable
+
+    from camgeo.capabilities.cylindrical.crossings import Crossing
     from camgeo.capabilities.cylindrical.keys import DrumRecipe
     from camgeo.capabilities.cylindrical.sheet import Sheet
     from camgeo.capabilities.cylindrical.undercut import Cut, Tip
@@ -24,6 +30,7 @@ if TYPE_CHECKING:
     from camgeo.schema.errors import RecipeErrors
     from kin.law.piecewise import Piecewise
     from kin.law.sources.motion import Motion
+    from kin.numeric.arrays import Array
 
 CUT_ROWS = 48  # on which what is cut away is known for figures
 
@@ -54,6 +61,27 @@ class DrumDesign:
                 "upper": replace(upper, guide=guide.beside(-half)),
             }
         return {"lower": lower} if track.facing == "top" else {"upper": upper}
+
+    @cached_property
+    def crossings(self) -> list[Crossing]:
+        """Crossings of the tracks of a groove of several turns; raises CrossingError as `crossings_of` does."""
+        if self.recipe.turns == 1:
+            return []
+        return crossings_of(self.flanks, self.recipe.floor, self.recipe.radius)
+
+    @cached_property
+    def gaps(self) -> list[float]:
+        """Length, mm, over which a track lacks a wall at each crossing, at that end of the shoe where it is longer."""
+        return [max(crossing.gap(r) for r in self.recipe.bearing) for crossing in self.crossings]
+
+    def greatest(self, figure: Callable[[Array], Array]) -> tuple[float, float]:
+        """Greatest value of a figure over shaft angles (n,), rad, of the period, and its angle, rad."""
+        begin = 0.0
+        if self.recipe.turns > 1:
+            places = np.linspace(0.0, self.recipe.period, self.recipe.turns * SEEK + 1)
+            begin = TURN * min(int(np.argmax(figure(places))) // SEEK, self.recipe.turns - 1)
+        value, at = greatest_of(lambda theta: figure(theta + begin), TURN)
+        return value, at + begin
 
     def sheet(self, name: str, tolerance: float) -> Sheet:
         """Points and grid of a flank within a tolerance, mm; raises ToleranceError where it cannot be held."""

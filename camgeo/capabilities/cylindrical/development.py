@@ -65,7 +65,7 @@ def developed(design: DrumDesign, request: FileRequest, mm: float) -> list[Devel
 
 def drawn(design: DrumDesign, line: Developed, tolerance: float) -> Line:
     """Points of a line over its period and the overlap, in the axes of the drawing; ToleranceError where too many."""
-    look = looks_of(design.law)
+    look, period = looks_of(design.law), design.recipe.period
     if line.flank == PITCH:
         bend, begin = _pitch_bends(design, line.radius, look), _pitch_start(design, line.radius)
     else:
@@ -75,9 +75,9 @@ def drawn(design: DrumDesign, line: Developed, tolerance: float) -> Line:
     if first.size > MOST_POINTS:
         least = tolerance * (float(first.size) / MOST_POINTS) ** 2
         raise ToleranceError(f"a development within {tolerance:.3g} mm would take too many points", least)
-    theta = np.concatenate([first - TURN, first, first + TURN])
-    theta = np.unique(np.concatenate([theta, [begin, begin + TURN, begin + TURN + OVERLAP]]))
-    theta = theta[(theta >= begin) & (theta <= begin + TURN + OVERLAP)]
+    theta = np.concatenate([first - period, first, first + period])
+    theta = np.unique(np.concatenate([theta, [begin, begin + period, begin + period + OVERLAP]]))
+    theta = theta[(theta >= begin) & (theta <= begin + period + OVERLAP)]
     points = _pitch(design, line.radius, theta) if line.flank == PITCH else _flank(design, line, theta)
     if design.recipe.rotation == "ccw":
         points = points * np.array([-1.0, 1.0]) + 0.0
@@ -88,9 +88,9 @@ def unrolled(design: DrumDesign, tolerance: float) -> list[Array]:
     """Lines (n, 2), mm, of the flanks on the blank, with the blank's ends and the marks of the overlap."""
     recipe = design.recipe
     lines = [drawn(design, Developed("", recipe.radius, name), tolerance).points for name in design.flanks]  # type: ignore[arg-type]
-    begin, end = _reach(design, recipe.radius, 0.0), _reach(design, recipe.radius, TURN + OVERLAP)
+    begin, end = _reach(design, recipe.radius, 0.0), _reach(design, recipe.radius, recipe.period + OVERLAP)
     edges = [np.array([[begin, z], [end, z]]) for z in (0.0, recipe.height)]
-    return [*lines, *edges, *(_mark(design, recipe.radius, at) for at in (0.0, TURN, TURN + OVERLAP))]
+    return [*lines, *edges, *(_mark(design, recipe.radius, at) for at in (0.0, recipe.period, recipe.period + OVERLAP))]
 
 
 def _reach(design: DrumDesign, radius: float, at: float) -> float:
@@ -137,9 +137,9 @@ def _flank(design: DrumDesign, line: Developed, theta: Array) -> Array:
             continue
         cut = cut_at(flank, tip, np.array([line.radius]))
         width = float(cut.last[0] - cut.first[0])
-        from_first = np.mod(theta - cut.first[0], TURN)
+        from_first = np.mod(theta - cut.first[0], flank.period)
         lost = (from_first > 0.0) & (from_first < width)
-        edges = cut.first[0] + TURN * np.arange(-3, 4)
+        edges = cut.first[0] + flank.period * np.arange(-3, 4)
         edges = edges[(edges >= theta[0]) & (edges <= theta[-1])]
         theta = np.unique(np.concatenate([theta[~lost], edges]))
     contact = flank.on(theta, line.radius)
@@ -177,13 +177,16 @@ def write_development(
         boxes = [_draw(space, line.of.layer, COLOURS[line.of.flank], line.points / mm) for line in lines]
         for radius in dict.fromkeys(line.of.radius for line in lines):
             layer = f"R{radius / mm:.9g}_{MARKS}"
-            boxes += [_draw(space, layer, 8, _mark(design, radius, at) / mm) for at in (TURN, TURN + OVERLAP)]
+            boxes += [
+                _draw(space, layer, 8, _mark(design, radius, at) / mm)
+                for at in (recipe.period, recipe.period + OVERLAP)
+            ]
         corners = np.array(boxes)
         return (*corners[:, :2].min(axis=0).tolist(), *corners[:, 2:].max(axis=0).tolist())
 
     notes = [
         f"camgeo development: on {line.of.layer} x = {line.of.radius / mm:.9g} times the angle, "
-        f"one period of {TURN * line.of.radius / mm:.9g}, then an overlap; right at this radius alone"
+        f"one period of {recipe.period * line.of.radius / mm:.9g}, then an overlap; right at this radius alone"
         for line in lines
     ]
     write_dxf(path, [], mm=mm, name=recipe.name, about=recipe.about, remarks=notes, annotate=annotate)

@@ -40,14 +40,21 @@ function playDrum(data, kept = null) {
 
   // outlines of the bands of a shell between two angles to the right of the viewer
   function seen(shell, turn, low, high, chords) {
-    return shell.bands.map((band) => {
-      const sides = band.map((z) =>
-        Array.from({ length: chords + 1 }, (_, k) => {
-          const psi = low + (high - low) * (chords ? k / chords : 0);
-          return [shell.radius * Math.sin(psi), z((psi + turn) / TURN)];
-        }),
-      );
-      return sides[0].concat(sides[1].reverse());
+    return shell.bands.flatMap((band) => {
+      const found = []; // runs of places at which the band is
+      let run = null;
+      for (let k = 0; k <= chords; k++) {
+        const psi = low + (high - low) * (chords ? k / chords : 0);
+        const [x, bottom, top] = [shell.radius * Math.sin(psi), ...band.map((z) => z((psi + turn) / TURN))];
+        if (!Number.isFinite(bottom + top)) {
+          run = null;
+          continue;
+        }
+        if (!run) found.push((run = [[], []]));
+        run[0].push([x, bottom]);
+        run[1].unshift([x, top]);
+      }
+      return found.map(([below, above]) => below.concat(above));
     });
   }
 
@@ -65,17 +72,19 @@ function playDrum(data, kept = null) {
   function rims(turn) {
     return [-0.5 * Math.PI, 0.5 * Math.PI].flatMap((at) => {
       const ends = shells.map((shell) => seen(shell, turn, at, at, 0));
+      if (ends.some((end) => end.length !== ends[0].length)) return []; // beside the point of a band
+      for (const end of ends) end.sort((a, b) => a[0][1] - b[0][1]);
       return ends[0].map((_, band) => ends.map((end) => end[band][0]).concat(ends.map((end) => end[band].at(-1)).reverse()));
     });
   }
 
   function showKept(share) {
-    paths[0].setAttribute("d", closed(near(shells.at(-1), data.sense * share * TURN)));
+    paths[0].setAttribute("d", closed(near(shells.at(-1), data.sense * share * data.turns * TURN)));
   }
   if (kept) return showKept;
 
   function show(share) {
-    const turn = data.sense * share * TURN;
+    const turn = data.sense * share * data.turns * TURN;
     const n = shells.length;
     shells.forEach((shell, k) => {
       paths[n - 1 - k].setAttribute("d", closed(far(shell, turn)));
@@ -91,11 +100,13 @@ function playDrum(data, kept = null) {
       arcs[i].setAttribute("d", Number.isFinite(low) ? path(Array.from({ length: 13 }, place)) : "");
     });
     const [scale, width, height, left, top] = data.flat;
-    const at = data.sense > 0 ? share : 1 - share;
+    const own = (share * data.turns) % 1;
+    const at = data.sense > 0 ? own : 1 - own;
     developed.forEach((group, i) => {
       const roller = rollers[Math.floor(i / 3)];
       const x = left + width * (at + data.sense * roller.beside(share) + (i % 3) - 1);
-      group.setAttribute("transform", `translate(${x.toFixed(2)} ${(top + height - scale * roller.z(share)).toFixed(2)})`);
+      const turned = roller.turn ? ` rotate(${(-roller.turn(share)).toFixed(2)})` : "";
+      group.setAttribute("transform", `translate(${x.toFixed(2)} ${(top + height - scale * roller.z(share)).toFixed(2)})${turned}`);
     });
     cursor?.setAttribute("transform", `translate(${(data.map[0] + data.map[1] * share).toFixed(2)} 0)`);
   }
@@ -113,7 +124,8 @@ function playDrum(data, kept = null) {
     const next = Number(document.documentElement.dataset.at) - (data.sense * (event.clientX - grip) * 180) / (Math.PI * radius);
     grip = event.clientX;
     const slider = document.getElementById("slider");
-    slider.value = ((next % 360) + 360) % 360;
+    const whole = 360 * data.turns;
+    slider.value = ((next % whole) + whole) % whole;
     slider.dispatchEvent(new Event("input"));
   });
   for (const name of ["pointerup", "pointercancel"]) drum.addEventListener(name, () => (grip = null));

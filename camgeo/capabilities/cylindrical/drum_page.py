@@ -22,7 +22,7 @@ from camgeo.capabilities.cylindrical.charts import (
 )
 from camgeo.capabilities.cylindrical.figures import contact_length
 from camgeo.capabilities.cylindrical.shells import FACE, PLACES, RIM, shells
-from camgeo.capabilities.cylindrical.turning import LINES, rollers, scene, sense, touched
+from camgeo.capabilities.cylindrical.turning import LINES, rollers, scene, sense, slope, touched
 from camgeo.measures.units import UNIT_NAMES
 from camgeo.report.page import tables
 from camgeo.report.page.page import pack_numbers, picture, plotted
@@ -51,7 +51,7 @@ def drawn(design: DrumDesign) -> dict[str, Any]:
     """Data of the page's script that show the drum and its follower, and turn them; the last are kept."""
     of = shells(design)
     seen = scene(design, of=of)
-    turn = np.linspace(0.0, 2.0 * math.pi, STEPS + 1)
+    turn = np.linspace(0.0, design.recipe.period, STEPS + 1)
     shown = picture(design.recipe, seen, turn, -1 if design.recipe.rotation == "cw" else 1)
     return {**shown, "player": {"name": "playDrum", "data": _played(design, of, seen.digits)}}
 
@@ -92,8 +92,10 @@ def _played(design: DrumDesign, of: Sequence[Shell], digits: int) -> dict[str, A
     """Return the data of the drum's player in the recipe's unit; `digits` are those of the drawing's coordinates."""
     recipe = design.recipe
     mm = recipe.mm
-    theta = np.linspace(0.0, 2.0 * math.pi, LINES + 1)
+    theta = np.linspace(0.0, recipe.period, LINES + 1)
+    boat = {"turn": pack_numbers(np.degrees(slope(design, theta)))} if recipe.roller.shoe is not None else {}
     return {
+        "turns": recipe.turns,
         "sense": sense(design),
         "digits": digits,
         "places": PLACES,
@@ -118,7 +120,7 @@ def _played(design: DrumDesign, of: Sequence[Shell], digits: int) -> dict[str, A
             for ends in (touched(design, name) for name in design.flanks)
         ],
         "rollers": [
-            {"beside": pack_numbers(beside), "z": pack_numbers(z / mm)}
+            {"beside": pack_numbers(beside), "z": pack_numbers(z / mm), **boat}
             for beside, z in (flat_axis(design, flank, theta) for flank in rollers(design))
         ],
         "flat": [flat_scale(design) * mm, FIELD, flat_scale(design) * recipe.height, LEFT, TOP],
@@ -139,7 +141,7 @@ def _figures(report: dict[str, Any]) -> str:
 def _plots(design: DrumDesign) -> list[Plot]:
     """Lift and its derivatives, pressure angle at both ends of contact, and the length of the line of contact."""
     recipe = design.recipe
-    theta = np.linspace(0.0, 2.0 * math.pi, STEPS + 1)
+    theta = np.linspace(0.0, recipe.period, STEPS + 1)
     unit = UNIT_NAMES[recipe.units]
     rows = design.law.derivatives(theta, 2)
     rows = np.degrees(rows) if recipe.swings else rows / recipe.mm

@@ -9,12 +9,14 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from camgeo.capabilities.cylindrical.crossings import lost_of
 from camgeo.capabilities.cylindrical.grid import breaks_of
 from camgeo.capabilities.cylindrical.keys import Groove, Rib
+from camgeo.capabilities.cylindrical.shoe import angle_of, play, twist
 from camgeo.capabilities.cylindrical.undercut import below
 from camgeo.curve.extremes import both
 from camgeo.measures.hertz import bearable, line_pressure
-from camgeo.measures.placed import Figure, greatest_of
+from camgeo.measures.placed import Figure
 from camgeo.recipe.figures import PRESSURE_ANGLE
 
 if TYPE_CHECKING:
@@ -64,7 +66,8 @@ def carried_from(design: DrumDesign, name: str, theta: Array) -> Array:
     flank = design.flanks[name]
     rho = np.full(theta.shape, design.recipe.roller.inner)
     for cut in design.cuts[name]:
-        offset = np.mod(theta - cut.tip.at + math.pi, TURN) - math.pi
+        half = 0.5 * design.recipe.period
+        offset = np.mod(theta - cut.tip.at + half, 2.0 * half) - half
         r = np.append(cut.r, cut.tip.r)
         for ends, sign in ((cut.first, -1.0), (cut.last, 1.0)):
             # from the tip inwards the ends of what is lost lie farther and farther from it
@@ -90,13 +93,39 @@ def figures_of(design: DrumDesign) -> list[Figure]:
     if recipe.swings:
         found.append(_off_radius(design))
     if isinstance(recipe.track, Groove):
-        play, place = greatest_of(lambda theta: play_at(design, theta), TURN)
+        play, place = design.greatest(lambda theta: play_at(design, theta))
         found.append(_displaced(design, "play", play, "", math.degrees(place)))
     if isinstance(recipe.track, Rib):
-        thickness, thin = greatest_of(lambda theta: -rib_thickness(design, theta, recipe.floor), TURN)
+        thickness, thin = design.greatest(lambda theta: -rib_thickness(design, theta, recipe.floor))
         found.append(Figure("rib-thickness", -thickness, "mm", math.degrees(thin)))
+    found += [*_crossed(design), *_boat(design)]
     steep = angles[PRESSURE_ANGLE]
     return [*found, *_curved(design), *_driven(design), *_loaded(design, steep), *_heavy(design)]
+
+
+def _crossed(design: DrumDesign) -> list[Figure]:
+    """Number of crossings, the least angle between their tracks, and the longest gap in a wall."""
+    if not design.crossings:
+        return []
+    flat = min(design.crossings, key=lambda each: (angle_of(design, each), each.first))
+    gap, back = max(zip(design.gaps, [-each.first for each in design.crossings], strict=True))
+    return [
+        Figure("crossings", len(design.crossings), "", None),
+        Figure("crossing-angle", math.degrees(angle_of(design, flat)), "deg", math.degrees(flat.first)),
+        Figure("crossing-gap", gap, "mm", math.degrees(-back)),
+    ]
+
+
+def _boat(design: DrumDesign) -> list[Figure]:
+    """Play of a shoe in its crossings, and the play that it needs as its track's slope changes along its pin."""
+    if design.recipe.roller.shoe is None:
+        return []
+    found = []
+    if design.crossings:
+        value, crossing = play(design)
+        found.append(Figure("shoe-play", value, "mm", math.degrees(crossing.first)))
+    value, at = twist(design)
+    return [*found, Figure("shoe-twist", value, "mm", math.degrees(at))]
 
 
 def _displaced(design: DrumDesign, name: str, value: float, per: str, at: float | None) -> Figure:
@@ -118,7 +147,7 @@ def steepest_contacts(design: DrumDesign) -> dict[str, tuple[float, float]]:
             ends = outer_end(design, name, theta) if rho is None else np.full_like(theta, rho)
             return np.asarray(np.abs(design.flanks[name].pressure(theta, ends)))
 
-        return max(greatest_of(partial(angle, name=name), TURN) for name in design.flanks)
+        return max(design.greatest(partial(angle, name=name)) for name in design.flanks)
 
     inner, half, outer = at(roller.inner), at(middle), at(None)
     return {PRESSURE_ANGLE: max(inner, outer), MIDDLE: half, OUTER: outer}
@@ -141,7 +170,7 @@ def _off_radius(design: DrumDesign) -> Figure:
     def off(theta: Array) -> Array:
         return np.asarray(np.max([np.abs(flank.pose(theta).y) for flank in design.flanks.values()], axis=0))
 
-    value, at = greatest_of(off, TURN)
+    value, at = design.greatest(off)
     return Figure("off-radius", value, "mm", math.degrees(at))
 
 
@@ -149,7 +178,7 @@ def _carrying(design: DrumDesign) -> list[Figure]:
     """Least length of the line of contact and its share, and how far out undercut reaches."""
     least = []
     for name in design.flanks:
-        value, at = greatest_of(lambda theta, name=name: -contact_length(design, name, theta), TURN)  # type: ignore[misc]
+        value, at = design.greatest(lambda theta, name=name: -contact_length(design, name, theta))  # type: ignore[misc]
         whole = float(outer_end(design, name, np.array([at]))[0]) - design.recipe.roller.inner
         least.append((-value, max(-value, 0.0) / whole, math.degrees(at)))
     length, share, place = min(least)
@@ -184,7 +213,7 @@ def _curved(design: DrumDesign) -> list[Figure]:
     """Least radius of both bodies together across the line of contact, mm; none where a cut may leave a sharp edge."""
     if design.recipe.shortens:
         return []
-    worst = [greatest_of(lambda theta, name=name: _sharpest(design, name, theta)[0], TURN) for name in design.flanks]  # type: ignore[misc]
+    worst = [design.greatest(lambda theta, name=name: _sharpest(design, name, theta)[0]) for name in design.flanks]  # type: ignore[misc]
     curvature, at = max(worst)
     return [Figure("mating-radius", 1.0 / curvature if curvature > 0.0 else math.inf, "mm", math.degrees(at))]
 
@@ -200,6 +229,11 @@ def _sharpest(design: DrumDesign, name: str, theta: Array) -> tuple[Array, Array
     """Greatest sum of curvatures along the line of contact (n,), 1/mm, and all of them (ALONG, n)."""
     flank = design.flanks[name]
     rows = np.stack([flank.curvature(theta, rho) for rho in _along(design, name, theta)])
+    # a shoe's side is bent less than a roller
+    rows = np.maximum(
+        rows - (1.0 / flank.radius - 1.0 / (design.recipe.roller.side + flank.radius - design.recipe.roller.radius)),
+        0.0,
+    )
     return rows.max(axis=0), rows
 
 
@@ -251,7 +285,7 @@ def _loaded(design: DrumDesign, steep: tuple[float, float]) -> list[Figure]:
         return found
 
     names = design.flanks if not isinstance(recipe.track, Groove) else ("lower",)
-    value, at = max(greatest_of(lambda theta, name=name: pressure(name, theta), TURN) for name in names)  # type: ignore[misc]
+    value, at = max(design.greatest(lambda theta, name=name: pressure(name, theta)) for name in names)  # type: ignore[misc]
     return [*found, Figure("contact-pressure", value, "N/mm^2", math.degrees(at))]
 
 
@@ -304,12 +338,16 @@ def _areas(design: DrumDesign, name: str, r: Array) -> Array:
 def _kept(design: DrumDesign, name: str, radius: float) -> list[tuple[float, float]]:
     """Stretches of shaft angles, rad, without a break, on which a flank on a cylinder is not cut away."""
     knots = breaks_of(design.flanks[name])
-    knots = np.unique(np.concatenate([np.linspace(knots[0], knots[-1], 13), knots]))
+    knots = np.unique(np.concatenate([np.linspace(knots[0], knots[-1], 12 * design.recipe.turns + 1), knots]))
     lost: list[tuple[float, float]] = []
+    period = design.recipe.period
     for cut in design.cuts[name]:
         if radius < cut.tip.r:
             first, last = cut.at(np.array([radius]))
-            lost += [(float(first[0]) + turn, float(last[0]) + turn) for turn in (-TURN, 0.0, TURN)]
+            lost += [(float(first[0]) + turn, float(last[0]) + turn) for turn in (-period, 0.0, period)]
+    for each in lost_of(design.crossings, name):
+        begin, end = (float(angle[0]) for angle in each.over(np.array([radius])))
+        lost += [(begin + turn, end + turn) for turn in (-2.0 * period, -period, 0.0, period)]
     inside = [each for pair in lost for each in pair if knots[0] < each < knots[-1]]
     ends = np.unique(np.concatenate([knots, inside]))
     return [

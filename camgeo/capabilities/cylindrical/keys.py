@@ -6,7 +6,7 @@ import math
 from typing import TYPE_CHECKING, Literal, TypeAlias
 
 from camgeo.formats.options import RECIPE_UNITS, SOLID_UNITS, TOLERANCE
-from camgeo.motions.inputs import WHOLE_PART
+from camgeo.motions.inputs import Input
 from camgeo.motions.motion import motion_field
 from camgeo.part import bore
 from camgeo.part.keyway import FEATURE as KEYWAY
@@ -43,6 +43,7 @@ if TYPE_CHECKING:
 FLOOR_GAP = 0.5  # mm that a roller stands off the floor where the recipe does not say where it begins
 MOST_RADII = 20  # of one development
 OUTER, PITCH = "outer", "pitch"
+MOST_TURNS = 40
 APEX = "axis"  # of a cone whose apex is on the drum's axis
 STEEPEST_CONE = 60  # degrees, half angle of a conical roller
 
@@ -79,7 +80,8 @@ class Roller:
     """A roller that bears from `inner` to `outer` along its axis, from the cam's, mm.
 
     It has its radius, mm, at the distance `at`, mm; `taper` is its half angle, rad, 0 of a cylinder. `apex` says that
-    the taper is that of a cone with its apex on the cam's axis, whatever its radius.
+    the taper is that of a cone with its apex on the cam's axis, whatever its radius. A `shoe` of that length, mm, from
+    tip to tip turns on a pin in place of the roller, whose radius is half its width; its sides are two arcs.
     """
 
     radius: float
@@ -88,6 +90,17 @@ class Roller:
     taper: float = 0.0
     at: float = 0.0
     apex: bool = False
+    shoe: float | None = None
+
+    @property
+    def word(self) -> str:
+        """What it is called."""
+        return "shoe" if self.shoe is not None else "conical roller" if self.taper else "roller"
+
+    @property
+    def side(self) -> float:
+        """Radius of curvature of its sides, mm: that of the arcs of a shoe."""
+        return self.radius if self.shoe is None else 0.5 * (0.25 * self.shoe**2 / self.radius + self.radius)
 
     def resized(self, radius: float) -> Roller:
         """The roller of another radius, mm."""
@@ -147,8 +160,7 @@ class DrumRecipe(ShaftOrder):
     @property
     def follower_name(self) -> str:
         """Name of the follower in reports."""
-        roller = "conical roller" if self.roller.taper else "roller"
-        return f"{roller} on an arm" if self.swings else f"{roller} on a carriage along the axis"
+        return f"{self.roller.word} on an arm" if self.swings else f"{self.roller.word} on a carriage along the axis"
 
     @property
     def swings(self) -> bool:
@@ -159,6 +171,11 @@ class DrumRecipe(ShaftOrder):
     def floor(self) -> float:
         """Radius of the floor of the track, mm."""
         return self.radius - self.track.depth
+
+    @property
+    def bearing(self) -> tuple[float, float]:
+        """Distances from the axis, mm, between which the walls of a track lead."""
+        return self.roller.inner, min(self.roller.outer, self.radius)
 
     @property
     def height(self) -> float:
@@ -201,18 +218,18 @@ def _place(name: str, about: str, default: str = "", *, required: bool = False) 
     return Field(name, Kind.LENGTH, about, default=default, required=required, at_least=-MOST, at_most=MOST)
 
 
-ROLLER = mapping(
-    "follower",
-    "the roller, on a carriage that travels along the cam's axis, or on an arm",
+_FOLLOWER = (
     Field(
         "kind",
         Kind.CHOICE,
         "what touches the drum",
         default="roller",
-        choices=("roller",),
+        choices=("roller", "shoe"),
         others="a conical roller is a roller with a taper",
     ),
-    length("radius", "radius of the roller", required=True),
+    length("radius", "radius of the roller"),
+    length("width", "width of a shoe, as wide as its groove: one in the shape of a boat that turns on its pin"),
+    length("length", "length of a shoe from tip to tip; its sides are two arcs"),
     length("from", "where it begins to bear along its axis, from the cam's axis", default="the floor and 0.5 mm"),
     length("to", "where it ends", default="radius of the blank"),
     _place("offset", "distance of its axis from a radius of the drum, the way the contact runs on a turning drum", "0"),
@@ -240,6 +257,13 @@ ROLLER = mapping(
             choices=("trailing", "leading"),
         ),
     ),
+)
+ROLLER = Field(
+    "follower",
+    Kind.TABLE,
+    "the roller, on a carriage that travels along the cam's axis, or on an arm; or a shoe on a carriage",
+    required=True,
+    table=FieldTable(_FOLLOWER, alternatives=(("radius", ()), ("width", ("length",)))),
 )
 _DEPTH = length("depth", "depth below the blank", required=True)
 TRACK = Field(
@@ -293,7 +317,7 @@ CAM = FieldTable(
         Field("kind", Kind.CHOICE, "a drum that turns about its axis", required=True, choices=("cylindrical",)),
         length("radius", "radius of the blank", required=True),
         TRACK,
-        replace(ROLLER, required=True),
+        ROLLER,
         Field(
             "pitch_height",
             Kind.LENGTH,
@@ -305,9 +329,17 @@ CAM = FieldTable(
         motion_field(
             "motion",
             Kind.STROKE,
-            "lift, of an arm its swing, over one turn, 360 degrees",
-            over=WHOLE_PART,
+            "lift, of an arm its swing, over one turn, 360 degrees, or over `turns`",
+            over=Input(most=360 * MOST_TURNS),
             required=True,
+        ),
+        Field(
+            "turns",
+            Kind.INTEGER,
+            "turns of the drum after which the motion repeats; only of a groove, which crosses itself then",
+            default="1",
+            at_least=1,
+            at_most=MOST_TURNS,
         ),
         Field(
             "undercut",
@@ -342,6 +374,11 @@ FIGURES = {
     "contact-length": ("least length of the line of contact", Kind.LENGTH),
     "carrying-share": ("least share of the roller's line that carries, from 0 to 1", Kind.NUMBER),
     "undercut-radius": ("distance from the axis within which a flank is undercut", Kind.LENGTH),
+    "crossings": ("number of places at which a groove of several turns crosses itself", Kind.NUMBER),
+    "crossing-angle": ("least angle between two tracks that cross, degrees", Kind.ANGLE),
+    "crossing-gap": ("greatest length over which a track lacks a wall at a crossing", Kind.LENGTH),
+    "shoe-play": ("greatest play of a shoe across its track, to either side, in a crossing", Kind.LENGTH),
+    "shoe-twist": ("greatest play that a shoe needs as its track's slope is another at its inner end", Kind.LENGTH),
     "rib-thickness": ("least thickness of a rib along the axis", Kind.LENGTH),
     "off-radius": ("greatest distance of the roller's axis on an arm from a radius of the drum", Kind.LENGTH),
     "play": ("greatest play of the follower in a groove", Kind.STROKE),

@@ -36,7 +36,9 @@ def foresee(design: DrumDesign, request: FileRequest) -> None:
         from camgeo.files.brep import need_kernel
 
         recipe, problem = design.recipe, ""
-        if any(design.tips.values()):
+        if recipe.turns > 1:
+            problem = "STEP of a groove of several turns, which crosses itself, is not made yet"
+        elif any(design.tips.values()):
             problem = "a flank that an undercut shortens ends in a sharp edge, and no STEP is made of it"
         elif not all(is_radial(flank, (recipe.floor, recipe.radius)) for flank in design.flanks.values()):
             problem = "STEP is made for a cylindrical roller on a carriage alone, whose axis is a radius of the drum"

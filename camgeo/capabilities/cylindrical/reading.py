@@ -44,7 +44,6 @@ if TYPE_CHECKING:
 ANGLES = 1  # what a disc would be judged at: a drum is judged at all angles
 TURN = 2.0 * math.pi
 NOT_YET = {
-    "cam.turns": "a track closes after one turn",
     "cam.sizing": "give the radius of the blank",
     "manufacture": "a program has its cutter and feeds beside its axes, {gcode: {axes: [X, A], cutter: 20}}",
 }
@@ -88,8 +87,12 @@ def _not_yet(error: RecipeError) -> RecipeError:
 
 def _check(values: Values, reader: Reader) -> None:
     cam, part = values["cam"], values["part"]
-    whole, several = "the whole turn, 360 degrees", "a track of several turns is not made yet"
-    check_filled(cam["motion"], "cam.motion", TURN, whole, reader, why=several)
+    turns = cam.get("turns", 1)
+    whole = "the whole turn, 360 degrees" if turns == 1 else f"{turns} turns, {360 * turns} degrees"
+    several = "a track of several turns has cam.turns"
+    check_filled(cam["motion"], "cam.motion", turns * TURN, whole, reader, why=several)
+    _check_shoe(cam, reader)
+    _check_turns(cam, reader)
     _check_guide(cam, reader)
     _check_track(cam, reader)
     _check_drive(cam.get("drive", {}), reader)
@@ -100,6 +103,50 @@ def _check(values: Values, reader: Reader) -> None:
     _check_radii(values, reader)
     _check_programs(values, reader)
     _check_limits(values, reader)
+
+
+def _check_shoe(cam: Values, reader: Reader) -> None:
+    """Note a shoe without its sizes, where nothing leads it on two sides, and on what is no straight carriage."""
+    given, path = cam["follower"], "cam.follower"
+    if (given.get("kind") == "shoe") != ("width" in given):
+        key, remedy = (
+            ("radius", "give width and length") if given.get("kind") == "shoe" else ("width", "give kind: shoe")
+        )
+        reader.fault_at(f"{path}.{key}", f"does not go with a {given.get('kind', 'roller')}", None, remedy)
+        return
+    if "width" not in given:
+        return
+    if "groove" not in cam["track"]:
+        (track,) = cam["track"]
+        reader.fault_at(f"{path}.kind", f"a shoe is led by a groove alone, not by a {track}", None, "give a roller")
+    for key in ("offset", "taper", "at", "arm"):
+        if given.get(key):
+            remedy = "leave it out: a shoe is on a carriage, and its pin is a radius of the drum"
+            reader.fault_at(f"{path}.{key}", "does not go with a shoe", None, remedy)
+    if not given["length"] > given["width"]:
+        remedy = f"give more than {_shown(given['width'], reader)}"
+        problem = "a shoe is longer than it is wide"
+        reader.fault_at(f"{path}.length", problem, _shown(given["length"], reader), remedy)
+
+
+def _check_turns(cam: Values, reader: Reader) -> None:
+    """Note what is made of one turn alone."""
+    if cam.get("turns", 1) == 1:
+        return
+    if "groove" not in cam["track"]:
+        word = "a rib" if "rib" in cam["track"] else "an end face"
+        problem = f"the turns of {word} would cross, and cut one another's faces away"
+        reader.fault_at("cam.track", problem, None, "give a groove, or leave cam.turns out")
+    if cam.get("undercut") == "shorten":
+        remedy = "leave it out, and give a smaller roller or depth, or wider reversals where it is undercut"
+        reader.fault_at(
+            "cam.undercut", "an undercut that shortens a track of several turns is not made yet", None, remedy
+        )
+
+
+def _size(given: Values) -> float:
+    """Radius of the roller, or half the width of the shoe, mm."""
+    return float(given["radius"] if "radius" in given else 0.5 * given["width"])
 
 
 def _shown(value: float, reader: Reader) -> str:
@@ -130,10 +177,10 @@ def _roller(cam: Values, floor: float) -> Roller:
     """The roller of a track down to a floor, mm."""
     given, radius = cam["follower"], cam["radius"]
     inner, outer = given.get("from", floor + FLOOR_GAP), given.get("to", radius)
-    at, taper = given.get("at", 0.5 * (inner + outer)), given.get("taper", 0.0)
+    at, taper, size = given.get("at", 0.5 * (inner + outer)), given.get("taper", 0.0), _size(given)
     if taper == APEX:
-        return Roller(given["radius"], inner, outer, at=at, apex=True).resized(given["radius"])
-    return Roller(given["radius"], inner, outer, taper, at if taper else 0.0)
+        return Roller(size, inner, outer, at=at, apex=True).resized(size)
+    return Roller(size, inner, outer, taper, at if taper else 0.0, shoe=given.get("length"))
 
 
 def _check_track(cam: Values, reader: Reader) -> None:
@@ -159,9 +206,9 @@ def _check_track(cam: Values, reader: Reader) -> None:
         return
     if not floor > least:
         at = f"{path}.from" if kind == "end" else f"cam.track.{kind}.depth"
-        most = radius - roller["radius"]
+        most = radius - _size(roller)
         remedy = (
-            f"give more than {_shown(roller['radius'] + FLOOR_GAP, reader)}, or a smaller roller"
+            f"give more than {_shown(_size(roller) + FLOOR_GAP, reader)}, or a smaller roller"
             if kind == "end"
             else f"give less than {_shown(most, reader)}, or a smaller roller"
         )
@@ -271,10 +318,16 @@ def _check_limits(values: Values, reader: Reader) -> None:
     cam, part = values["cam"], values["part"]
     drive, track = cam.get("drive", {}), cam["track"]
     regular = cam.get("undercut") != "shorten"
+    several, shoe = (cam.get("turns", 1) > 1, "cam.turns above 1"), "width" in cam["follower"]
     driven, loaded = ("rpm" in drive, "cam.drive.rpm"), ("load" in drive, "cam.drive.load")
     there = {
         "rib-thickness": ("rib" in track, "a rib"),
         "play": ("groove" in track, "a groove"),
+        "crossings": several,
+        "crossing-angle": several,
+        "crossing-gap": several,
+        "shoe-play": (cam.get("turns", 1) > 1 and shoe, "cam.turns above 1 and a shoe"),
+        "shoe-twist": (shoe, "a shoe"),
         "velocity": driven,
         "acceleration": driven,
         "contact-force": loaded,
@@ -332,6 +385,7 @@ def _built(values: Values, document: Document, reader: Reader) -> DrumRecipe:
             **bore.build_bore(part),
         ),
         undercut=cam.get("undercut", "refuse"),
+        turns=cam.get("turns", 1),
         drive=Drive(**cam.get("drive", {})),
         limits=build_bounds(values.get("limits", {})),
         **vars(document),

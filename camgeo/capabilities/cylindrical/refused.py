@@ -7,19 +7,20 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from camgeo.capabilities.cylindrical.crossings import lost_of
 from camgeo.capabilities.cylindrical.guide import Arm
 from camgeo.capabilities.cylindrical.keys import End, Rib
+from camgeo.capabilities.cylindrical.patches import demand_smooth, kept_between
+from camgeo.capabilities.cylindrical.shoe import demand_led
 from camgeo.capabilities.cylindrical.undercut import CutError, tips
 from camgeo.common.rounding import downward, upward
 from camgeo.curve.curve import CurveError
-from camgeo.measures.placed import greatest_of
 from kin.numeric.records import replace
 
 if TYPE_CHECKING:
     from camgeo.capabilities.cylindrical.design import DrumDesign
     from camgeo.capabilities.cylindrical.undercut import Tip
 
-TURN = 2.0 * math.pi
 MOST_SWING = 80.0  # degrees of an arm off the plane across the drum's axis
 SHARP = 1e-3  # of a radius in a remedy, and its distance from the size at which undercut begins
 ROLLER = "cam.follower.radius"
@@ -32,17 +33,39 @@ def demand_sound(design: DrumDesign) -> None:
     try:
         found = design.tips
     except CurveError as error:
-        raise design.error("cam", f"{error}, near {math.degrees(error.parameter) % 360.0:.6g} degrees") from error
+        raise design.error("cam", f"{error}, near {_degrees(design, error.parameter):.6g} degrees") from error
     if not any(found.values()):
+        _demand_tracks(design)
         return
     if not design.recipe.shortens:
         raise _undercut(design)
     try:
         _ = design.cuts
     except CutError as error:
-        where = f"near {math.degrees(error.parameter) % 360.0:.6g} degrees"
+        where = f"near {_degrees(design, error.parameter):.6g} degrees"
         raise design.error("cam.undercut", f"{error} {where}", _smaller(design)) from error
     _demand_carried(design)
+
+
+def _demand_tracks(design: DrumDesign) -> None:
+    """Raise RecipeErrors for tracks that run into one another, and for a follower that does not pass them."""
+    remedy = "give more lift a turn, shorter rests, or a narrower follower"
+    try:
+        _ = design.crossings
+        for name in design.flanks:
+            for r in (design.recipe.floor, design.recipe.radius):
+                kept_between(lost_of(design.crossings, name), r, design.recipe.period)
+        remedy = "let segments meet a few degrees earlier or later, or take laws that join without a step"
+        demand_smooth(design)
+    except CurveError as error:
+        problem = f"{error}, near {_degrees(design, error.parameter):.6g} degrees"
+        raise design.error("cam.motion", problem, remedy) from error
+    demand_led(design)
+
+
+def _degrees(design: DrumDesign, angle: float) -> float:
+    """A shaft angle, rad, in degrees of one period."""
+    return math.degrees(angle) % math.degrees(design.recipe.period)
 
 
 def _undercut(design: DrumDesign) -> Exception:
@@ -51,7 +74,7 @@ def _undercut(design: DrumDesign) -> Exception:
     name, tip = _outermost(design)
     problem = (
         f"the {name} flank is undercut from the floor out to {tip.r / mm:.6g} {units} from the axis, "
-        f"near {math.degrees(tip.at) % 360.0:.6g} degrees"
+        f"near {_degrees(design, tip.at):.6g} degrees"
     )
     remedies = [_smaller(design)]
     if tip.r < recipe.radius - SHARP * recipe.radius:
@@ -61,7 +84,8 @@ def _undercut(design: DrumDesign) -> Exception:
             remedies.append(
                 f"give a depth of at most {downward((1.0 - SHARP) * (recipe.radius - tip.r) / mm, 4)} {units}"
             )
-        remedies.append("let contact begin farther out: undercut: shorten")
+        if recipe.turns == 1:
+            remedies.append("let contact begin farther out: undercut: shorten")
     return design.error(ROLLER, problem, ", or ".join(filter(None, remedies)))
 
 
@@ -99,7 +123,7 @@ def _demand_carried(design: DrumDesign) -> None:
         def missing(theta: np.ndarray, name: str = name) -> np.ndarray:
             return -contact_length(design, name, theta)
 
-        most, at = greatest_of(missing, TURN)
+        most, at = design.greatest(missing)
         if most >= 0.0:
             problem = f"nothing of the roller's line carries it near {math.degrees(at):.6g} degrees: motion is lost"
             raise design.error("cam.undercut", problem, _smaller(design))
@@ -119,7 +143,7 @@ def _demand_near(design: DrumDesign) -> None:
                     + (", or a smaller distance" if isinstance(recipe.track, Rib) else "")
                 )
                 raise design.error("cam.motion", problem, remedy)
-        off, at = greatest_of(lambda theta, flank=flank: np.abs(flank.pose(theta).y), TURN)  # type: ignore[misc]
+        off, at = design.greatest(lambda theta, flank=flank: np.abs(flank.pose(theta).y))  # type: ignore[misc]
         room = recipe.floor - float(flank.size(recipe.floor))
         if not off < room:
             problem = f"the roller's axis stands {off / mm:.6g} {units} off a radius of the drum, past the floor's edge"
@@ -131,7 +155,7 @@ def _demand_near(design: DrumDesign) -> None:
         if not float(flank.size(least)) > 0.0:
             problem = "the cone ends in its apex before the floor"
             raise design.error("cam.follower.taper", problem, "give a smaller taper, axis, or a larger radius")
-        back, at = greatest_of(lambda theta, flank=flank: -flank.pose(theta).y1, TURN)  # type: ignore[misc]
+        back, at = design.greatest(lambda theta, flank=flank: -flank.pose(theta).y1)  # type: ignore[misc]
         if not back < least:
             problem = f"the arm takes its roller back faster than the floor turns, near {math.degrees(at):.6g} degrees"
             raise design.error("cam.motion", problem, "give a longer motion, or an arm that stands less aslant")

@@ -45,7 +45,7 @@ def whole_sheet(flank: Flank, low: float, high: float, tolerance: float) -> Shee
     """Sheet of a flank that is regular from radius `low` to `high`, mm; raises ToleranceError as `grid_of` does."""
     grid = grid_of(flank, (low, high), tolerance)
     theta, r = np.meshgrid(grid.theta[:-1], grid.r)
-    points = _points(flank, theta.ravel(), r.ravel())
+    points = points_of(flank, theta.ravel(), r.ravel())
     return Sheet(points, np.arange(points.shape[0]).reshape(r.shape), grid.off)
 
 
@@ -70,7 +70,7 @@ def cut_sheet(flank: Flank, low: float, high: float, tolerance: float, tips: Seq
     raise ToleranceError(f"a flank that is cut short is not within {tolerance:.3g} mm", 2.0 * off)
 
 
-def _points(flank: Flank, theta: Array, r: Array) -> Array:
+def points_of(flank: Flank, theta: Array, r: Array) -> Array:
     """Points (n, 3) of a flank, mm, at shaft angles and on cylinders (n,)."""
     phi, z = flank.on(theta, r)[2:4]
     return np.column_stack([r * np.cos(phi), r * np.sin(phi), z])
@@ -92,10 +92,10 @@ def _trimmed(flank: Flank, grid: Grid, cuts: Sequence[Cut]) -> Sheet:
                 within[np.argmin(np.abs(offset - 0.5 * (first[k] + last[k])))] = True
             at[k, within] = count + k
             early[k, within], late[k, within] = (theta - offset)[within] + first[k], (theta - offset)[within] + last[k]
-        edges.append(_points(flank, cut.first, cut.r))
+        edges.append(points_of(flank, cut.first, cut.r))
         count += cut.r.size
     radius, angle = np.meshgrid(grid.r, theta, indexing="ij")
-    points = np.concatenate([_points(flank, angle.ravel(), radius.ravel()), *edges])
+    points = np.concatenate([points_of(flank, angle.ravel(), radius.ravel()), *edges])
     used, number = np.unique(at, return_inverse=True)
     off = max(grid.off, _cells_off(flank, grid, (early, late), at >= grid.r.size * theta.size))
     return Sheet(points[used], number.reshape(at.shape), off)
@@ -127,9 +127,9 @@ def _corners(values: Array) -> Array:
 def _edge_off(flank: Flank, cut: Cut) -> float:
     """Distance, mm, of the edge of a cut half way between two rows from the chord between them."""
     r = np.append(cut.r, cut.tip.r)
-    ends = _points(flank, np.append(cut.first, cut.tip.at), r)
+    ends = points_of(flank, np.append(cut.first, cut.tip.at), r)
     middle = cut_at(flank, cut.tip, 0.5 * (r[:-1] + r[1:]))
-    between = _points(flank, middle.first, middle.r)
+    between = points_of(flank, middle.first, middle.r)
     chord = ends[1:] - ends[:-1]
     share = np.sum((between - ends[:-1]) * chord, axis=1) / np.sum(chord * chord, axis=1)
     return float(np.sqrt(np.sum((between - ends[:-1] - share[:, None] * chord) ** 2, axis=1)).max())

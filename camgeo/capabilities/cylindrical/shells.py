@@ -10,25 +10,28 @@ from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
+from camgeo.capabilities.cylindrical.crossings import sampled
 from camgeo.capabilities.cylindrical.development import drawn
 from camgeo.capabilities.cylindrical.keys import Rib
 from kin.cylindrical.intent import Developed
 
 if TYPE_CHECKING:
     from camgeo.capabilities.cylindrical.design import DrumDesign
-    from kin.numeric.arrays import Array
+    from kin.numeric.arrays import Array, Indices, Mask
 
 TURN = 2.0 * math.pi
 PLACES = 240  # of a turn, at which heights are known
 COARSE = 2e-4  # of the blank: to this a line is drawn
 DEEP = 5  # shells from the floor to the blank, of which the blank is the last
+LONGEST = 200  # places of a band
 FACE, RIM = 48, 8  # chords of a half that is seen, and of a strip of the far half beside the core
 
 
 class Shell(NamedTuple):
     """Metal on a cylinder of a radius, mm: bands of (low, high) heights (PLACES,), at equal steps of the polar angle.
 
-    Angles are those of the drum as it is made, mirrored for `rotation: ccw`.
+    Heights are nan where a band is not, as between tracks that cross. Angles are those of the drum as it is made,
+    mirrored for `rotation: ccw`.
     """
 
     radius: float
@@ -48,12 +51,69 @@ def height(design: DrumDesign, name: str, radius: float) -> Array:
 
 def shell(design: DrumDesign, radius: float) -> Shell:
     """The metal on the cylinder of a radius, mm, above the floor."""
+    if design.recipe.turns > 1:
+        return Shell(radius, tuple(_islands(design, radius)))
     flanks = {name: height(design, name, radius) for name in design.flanks}
     if isinstance(design.recipe.track, Rib):
         return Shell(radius, ((flanks["upper"], flanks["lower"]),))
     ends = {"lower": np.zeros(PLACES), "upper": np.full(PLACES, design.recipe.height)}
     bands = [(ends[name], z) if name == "lower" else (z, ends[name]) for name, z in flanks.items()]
     return Shell(radius, tuple(bands))
+
+
+def _islands(design: DrumDesign, radius: float) -> list[tuple[Array, Array]]:
+    """Bands of metal between the tracks of a groove that crosses itself, from below and above all of them on.
+
+    Each of the others ends in a point beside its last place; one that goes on for long is several.
+    """
+    columns = _columns(design, radius)
+    lowest, highest = (np.array([column[end] for column in columns]).T for end in (0, -1))
+    found = [(lowest[0], lowest[1]), (highest[0], highest[1])]
+    following: dict[tuple[int, int], tuple[int, int]] = {}
+    for j, column in enumerate(columns):
+        after = columns[(j + 1) % PLACES]
+        for i, (low, high) in enumerate(column[1:-1], 1):
+            over = [min(high, top) - max(low, bottom) for bottom, top in after[1:-1]]
+            if over and max(over) > 0.0:
+                following[j, i] = (j + 1) % PLACES, 1 + over.index(max(over))
+    begins = [(j, i) for j, column in enumerate(columns) for i in range(1, len(column) - 1)]
+    for begin in sorted(set(begins) - set(following.values())):
+        chain = [begin]
+        while chain[-1] in following and len(chain) < PLACES * design.recipe.turns:
+            chain.append(following[chain[-1]])
+        rows = [columns[j][i] for j, i in chain]
+        begin_at, end_at = (0.5 * (row[0] + row[1]) for row in (rows[0], rows[-1]))
+        whole = np.array([(begin_at, begin_at), *rows, (end_at, end_at)])
+        first = begin[0] - 1
+        pieces = [(first + part, whole[part : part + LONGEST + 1]) for part in range(0, len(whole) - 1, LONGEST)]
+        found += [_placed(*piece) for piece in pieces]
+    return found
+
+
+def _placed(first: int, rows: Array) -> tuple[Array, Array]:
+    """Bottom and top (PLACES,) of a band from a place on; nan elsewhere."""
+    band = np.full((2, PLACES), np.nan)
+    band[:, np.mod(first + np.arange(len(rows)), PLACES)] = rows.T
+    return band[0], band[1]
+
+
+def _columns(design: DrumDesign, radius: float) -> list[list[tuple[float, float]]]:
+    """Metal on a cylinder at each place of the turn, from below: bottom and top of each stretch of it, mm."""
+    rows = [sampled(design.flanks[name], radius)[0] for name in ("lower", "upper")]
+    low, high = (
+        row.reshape(design.recipe.turns, -1)[:, :: row.size // design.recipe.turns // PLACES].T for row in rows
+    )
+    if design.recipe.rotation == "ccw":
+        low, high = (np.roll(part[::-1], 1, axis=0) for part in (low, high))
+    found = []
+    for begins, ends in zip(low, high, strict=True):
+        column, up = [], 0.0
+        for begin, end in sorted(zip(begins.tolist(), ends.tolist(), strict=True)):
+            if begin > up:
+                column.append((up, begin))
+            up = max(up, end)
+        found.append([*column, (up, design.recipe.height)])
+    return found
 
 
 def shells(design: DrumDesign) -> list[Shell]:
@@ -73,8 +133,15 @@ def seen(of: Shell, turn: float, low: float, high: float, chords: int) -> list[A
     found = []
     for band in of.bands:
         bottom, top = (np.column_stack([x, np.interp(at, places, np.append(z, z[0]))]) for z in band)
-        found.append(np.concatenate([bottom, top[::-1]]))
+        there = runs(np.isfinite(bottom[:, 1] + top[:, 1]))
+        found += [np.concatenate([bottom[run], top[run][::-1]]) for run in there]
     return found
+
+
+def runs(good: Mask) -> list[Indices]:
+    """Indices of true values, run by run."""
+    at = np.flatnonzero(good)
+    return [run for run in np.split(at, np.flatnonzero(np.diff(at) > 1) + 1) if run.size]
 
 
 def far(of: Shell, turn: float, core: float) -> list[Array]:
@@ -91,10 +158,11 @@ def near(of: Shell, turn: float) -> list[Array]:
 
 def rims(of: list[Shell], turn: float) -> list[Array]:
     """Outlines of the metal between the first shell and the last, cut across the line of sight."""
-    found = []
+    found: list[Array] = []
     for side in (-1.0, 1.0):
         ends = [seen(each, turn, side * 0.5 * math.pi, side * 0.5 * math.pi, 0) for each in of]
-        for band in range(len(of[0].bands)):
-            rows = [end[band] for end in ends]
-            found.append(np.array([row[0] for row in rows] + [row[-1] for row in reversed(rows)]))
+        if len({len(end) for end in ends}) > 1:  # beside the point of a band
+            continue
+        bands = zip(*(sorted(end, key=lambda row: float(row[0, 1])) for end in ends), strict=True)
+        found += [np.array([row[0] for row in rows] + [row[-1] for row in reversed(rows)]) for rows in bands]
     return found

@@ -8,17 +8,21 @@ cylinder spans no more of the turn than an edge of either line does; flanks have
 from __future__ import annotations
 
 import math
-from typing import TYPE_CHECKING, NamedTuple
+from typing import TYPE_CHECKING, NamedTuple, TypeAlias
 
 import numpy as np
 
 from camgeo.capabilities.cylindrical.grid import sag, widest
 from camgeo.capabilities.cylindrical.keys import End, Groove
+from camgeo.capabilities.cylindrical.patches import corners_of, patches_of
+from camgeo.capabilities.cylindrical.sheet import points_of
+from camgeo.capabilities.cylindrical.sweep import Run, Sweep
 from camgeo.files.errors import RegionError
 from camgeo.files.mesh import Mesh, MeshFacts
 from camgeo.files.prism import rounded_loop
 from camgeo.files.triangulate import disc, region
 from camgeo.fit.bound import Bound
+from camgeo.fit.nodes import ToleranceError
 
 if TYPE_CHECKING:
     from camgeo.capabilities.cylindrical.design import DrumDesign
@@ -115,6 +119,12 @@ class _Body:
         self.triangles.append(found)
         return self._edge(number[-1]), self._edge(number[0])
 
+    def grid(self, number: Indices) -> None:
+        """Add triangles between the places (rows, columns) of a grid of points that has ends."""
+        a, b, c, d = number[:-1, :-1], number[1:, :-1], number[:-1, 1:], number[1:, 1:]
+        quads = (a, c, b), (d, b, c)
+        self.triangles += [np.column_stack([part.ravel() for part in quad]) for quad in quads]
+
     def _edge(self, row: Indices) -> _Line:
         row = row[row != np.roll(row, 1)]
         points = np.concatenate(self.points)[row]
@@ -148,12 +158,14 @@ def drum_mesh(design: DrumDesign, tolerance: float, precision: Precision) -> tup
     size = max(recipe.radius, abs(recipe.height))
     fine = precision.fit_tolerance(tolerance, ROUNDINGS * size)
     body = _Body(precision, fine)
+    if recipe.turns > 1:
+        ends, off = _crossed(body, design)
+        return _closed(design, body, ends, _bore(body, design, tolerance), (off, tolerance))
     sheets = {name: design.sheet(name, fine) for name in design.flanks}
+    bore = _bore(body, design, tolerance)
     bottom, top = 0.0, recipe.height
     core, blank = recipe.floor, recipe.radius
-    bore_low, bore_high, bore_off = _bore(body, design, tolerance)
     track = recipe.track
-    inner, outer = None, None  # lines of the lower and of the upper end face
     if isinstance(track, Groove):
         inner = body.circle(blank, bottom)
         edge, foot = body.flank(sheets["lower"], inwards=True)
@@ -177,18 +189,69 @@ def drum_mesh(design: DrumDesign, tolerance: float, precision: Precision) -> tup
         body.strip(rim, edge)
         outer = body.circle(core, top)
         body.strip(foot, outer)
+    off = max(sheet.off for sheet in sheets.values())
+    return _closed(design, body, (inner, outer), bore, (off, tolerance))
+
+
+def _closed(
+    design: DrumDesign, body: _Body, ends: tuple[_Line, _Line], bore: _Bore, bounds: tuple[float, float]
+) -> tuple[Mesh, MeshFacts]:
+    """The mesh of a body that lacks its end faces, within two lines, and the walls of its bore.
+
+    The bounds, mm, are that of the flanks and the tolerance.
+    """
+    recipe, precision, (flanks, tolerance) = design.recipe, body.precision, bounds
+    (inner, outer), (bore_low, bore_high, bore_off) = ends, bore
     body.face(inner, bore_low, up=False)
     body.face(outer, bore_high, up=True)
     if bore_low is not None and bore_high is not None:
         body.wall(bore_high, bore_low)
     mesh = body.mesh(mirrored=recipe.rotation == "ccw")
-    off = max(sheet.off for sheet in sheets.values()) + body.moved
+    off = flanks + body.moved
     precision.within("the flank", off, tolerance)
     rest = max(body.off + body.moved, bore_off)
     return mesh, MeshFacts(len(mesh.points), body.moved, Bound(off, off).wider(Bound(rest, rest)))
 
 
-def _bore(body: _Body, design: DrumDesign, tolerance: float) -> tuple[_Line | None, _Line | None, float]:
+def _crossed(body: _Body, design: DrumDesign) -> tuple[tuple[_Line, _Line], float]:
+    """Add a groove that crosses itself, with blank and floor; lines of the end faces, and the bound of the flanks, mm.
+
+    Corners of crossings are lines from floor to blank that flanks share; blank and floor lie between the flanks' rows.
+    """
+    recipe = design.recipe
+    made = patches_of(design, body.tolerance)
+    edges = {
+        id(corner): body.add(points_of(corner.flanks[0], corner.at(made.r)[0], made.r))
+        for corner in corners_of(design.crossings)
+    }
+    runs: tuple[list[Run], list[Run]] = ([], [])
+    for patch in made.patches:
+        inside = patch.theta[:, 1:-1]
+        radii = np.broadcast_to(made.r[:, None], inside.shape)
+        own = body.add(points_of(design.flanks[patch.name], inside.ravel(), radii.ravel())).reshape(inside.shape)
+        number: Indices = np.column_stack([edges[id(patch.begin)], own, edges[id(patch.end)]])
+        body.grid(number if patch.name == "upper" else number[::-1])
+        for run, row in zip(runs, (number[0], number[-1]), strict=True):
+            run.append(Run(row, closed=False, under=patch.name == "upper"))
+    lower, upper = (body.circle(recipe.radius, z) for z in (0.0, recipe.height))
+    runs[1].extend([Run(lower.number, closed=True, under=True), Run(upper.number, closed=True, under=False)])
+    points = np.concatenate(body.points)
+    angle = np.arctan2(points[:, 1], points[:, 0])
+    floor, blank = (Sweep(angle, points[:, 2], each) for each in runs)
+    for radius, triangles in ((recipe.floor, floor.groove), (recipe.radius, blank.metal)):
+        spans = np.remainder(angle[triangles] - angle[triangles[:, :1]] + math.pi, TURN)
+        body.off = max(body.off, float(sag(radius, np.ptp(spans, axis=1).max())))
+        body.triangles.append(triangles)
+    if body.off > body.tolerance:
+        problem = f"blank and floor between crossings are not within {body.tolerance:.3g} mm"
+        raise ToleranceError(problem, 2.0 * body.off)
+    return (lower, upper), made.off
+
+
+_Bore: TypeAlias = tuple[_Line | None, _Line | None, float]
+
+
+def _bore(body: _Body, design: DrumDesign, tolerance: float) -> _Bore:
     """Lines of the bore on the lower and the upper end face, None without one, and the distance of its walls, mm."""
     opening = design.bore
     if opening is None:

@@ -12,7 +12,15 @@ _MOTION = (
 )
 
 
-def _starter(title: str, task: str, track: Given, cam: Given, part: Given, *, arm: str = "") -> Starter:
+_OUT_AND_BACK = (
+    "\n    - {rise: 60, over: 1080, law: {uniform: {blend: 90}}}"
+    "\n    - {return: 60, over: 1080, law: {uniform: {blend: 90}}}"
+)
+
+
+def _starter(
+    title: str, task: str, track: Given, cam: Given, part: Given, *, arm: str = "", follower: Given | None = None
+) -> Starter:
     roller: Given = {"kind": "roller", "radius": "8", **({"from": "40"} if "end" in track else {})}
     if arm:
         roller["arm"] = arm
@@ -25,9 +33,9 @@ def _starter(title: str, task: str, track: Given, cam: Given, part: Given, *, ar
                 "kind": "cylindrical",
                 "radius": "50",
                 "track": track,
-                "follower": roller,
-                **cam,
+                "follower": follower or roller,
                 "motion": _MOTION.format("20" if arm else "25"),
+                **cam,
             },
             "part": {**part, "bore": "{diameter: 25, fit: H7}", "keyway": "din6885"},
             "export": {
@@ -72,6 +80,14 @@ ANSWERS = Starters(
             {"pitch_height": "31"},
             {"length": "90"},
             arm="{length: 80, offset: 79.4, pivot: 45}",
+        ),
+        "cylindrical-screw": _starter(
+            "A reversing screw that leads a shoe three turns out and three back.",
+            "a self-reversing screw, as of the level wind of a winch",
+            {"groove": {"depth": "6", "clearance": "0.05"}},
+            {"radius": "30", "turns": "6", "pitch_height": "14", "motion": _OUT_AND_BACK},
+            {"length": "88"},
+            follower={"kind": "shoe", "width": "8", "length": "46", "from": "25"},
         ),
     }
 )

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from camgeo.capabilities.cylindrical.crossings import lost_of
 from camgeo.capabilities.cylindrical.figures import carried_from, outer_end
 from camgeo.files.table import write_table
 from camgeo.measures.units import UNIT_NAMES
@@ -28,8 +29,9 @@ def write_csv(design: DrumDesign, request: FileRequest, path: Path) -> None:
     """Write the table of a request; raises OSError where the file cannot be written."""
     units = request.unit_for(design.recipe.units)
     mm = 25.4 if units == "inch" else 1.0
-    count = max(math.ceil(2.0 * math.pi / request.own.get("step", STEP) - 1e-9), 1)
-    theta = np.arange(count) * (2.0 * math.pi / count)
+    period = design.recipe.period
+    count = max(math.ceil(period / request.own.get("step", STEP) - 1e-9), 1)
+    theta = np.arange(count) * (period / count)
     table = flank_table if request.as_ == "flank" else motion_table
     names, rows = table(design, theta, mm, UNIT_NAMES[units])
     write_table(path, names, rows, gaps=True)
@@ -51,7 +53,7 @@ def flank_table(design: DrumDesign, theta: Array, mm: float, unit: str) -> tuple
     """Names and rows of contacts, three along the roller at each shaft angle: place, and outward normal of the metal.
 
     Angles are those of the drum as it is made, mirrored for `rotation: ccw`. Cells of a contact that is lost to
-    undercut are empty.
+    undercut, or to a track that crosses, are empty.
     """
     recipe = design.recipe
     sign = -1.0 if recipe.rotation == "ccw" else 1.0
@@ -63,6 +65,8 @@ def flank_table(design: DrumDesign, theta: Array, mm: float, unit: str) -> tuple
         contact = flank.along(at, rho)
         normal = flank.normal(contact, at) * np.array([1.0, sign, 1.0])
         there = rho >= carried_from(design, name, at) - SLACK
+        for lost in lost_of(design.crossings, name):
+            there &= ~lost.has(at, contact.r, recipe.period)
         own = {
             f"{name}_rho_{unit}": rho / mm,
             f"{name}_r_{unit}": contact.r / mm,

@@ -12,12 +12,14 @@ from camgeo.capabilities.cylindrical.guide import Arm
 from camgeo.capabilities.cylindrical.keys import Rib
 from camgeo.capabilities.cylindrical.shells import far, near, rims, shells
 from camgeo.curve.ring import Ring, bar, box, disc
-from camgeo.report.page.scene import CONTACTS, STEPS, FilledShape, MovingBody, Scene, pin, pivot, poses, still
+from camgeo.report.page.scene import CONTACTS, SHAFT, STEPS, FilledShape, MovingBody, Scene, pin, pivot, poses, still
 
 if TYPE_CHECKING:
     from camgeo.capabilities.cylindrical.design import DrumDesign
     from camgeo.capabilities.cylindrical.flank import Flank
+    from camgeo.capabilities.cylindrical.keys import DrumRecipe, Roller
     from camgeo.capabilities.cylindrical.shells import Shell
+    from camgeo.report.page.scene import SceneInput
     from kin.numeric.arrays import Array
 
 DRUM = "drum"  # the kind of the body that a page draws anew at each angle
@@ -37,7 +39,7 @@ def scene(design: DrumDesign, step: int = 0, of: list[Shell] | None = None) -> S
     `of` are its shells, by default as they are made here.
     """
     recipe = design.recipe
-    theta = np.linspace(0.0, 2.0 * math.pi, STEPS + 1)
+    theta = np.linspace(0.0, recipe.period, STEPS + 1)
     size = JOINT * (2.0 * recipe.radius + recipe.height)
     shapes = drum_shapes(design, of or shells(design), sense(design) * float(theta[step]))
     guide = recipe.guide
@@ -48,7 +50,13 @@ def scene(design: DrumDesign, step: int = 0, of: list[Shell] | None = None) -> S
         bodies.append(MovingBody(f"contact {name}", CONTACTS, (arc,), poses(*seen_axis(design, flank, theta), 0.0)))
     way = "clockwise" if recipe.rotation == "cw" else "counter-clockwise"
     note = f"seen along the roller's axis; the drum turns {way}, seen from above"
-    return Scene(tuple(bodies), note).scaled(1.0 / recipe.mm)
+    return Scene(tuple(bodies), note, input_of(recipe)).scaled(1.0 / recipe.mm)
+
+
+def input_of(recipe: DrumRecipe) -> SceneInput:
+    """Shaft angle over the turns after which the motion repeats."""
+    whole = 360 * recipe.turns
+    return SHAFT if recipe.turns == 1 else SHAFT._replace(most=whole, pace=f"times {recipe.turns} turns a minute")
 
 
 def drum_shapes(design: DrumDesign, of: list[Shell], turn: float) -> list[FilledShape]:
@@ -76,9 +84,27 @@ def seen_axis(design: DrumDesign, flank: Flank, theta: Array) -> tuple[Array, Ar
 
 
 def _roller(design: DrumDesign, x: float, y: float) -> FilledShape:
-    """The roller's outer end about a place."""
+    """The roller's outer end about a place, or the shoe."""
+    if design.recipe.roller.shoe is not None:
+        return FilledShape("roller", (Ring.through(outline(design.recipe.roller) + np.array([x, y])),), "shoe")
     roller = design.recipe.roller
     return FilledShape("roller", (disc(x, y, roller.size(roller.outer)),), "roller")
+
+
+def outline(roller: Roller) -> Array:
+    """Outline (n, 2) of a shoe about its pin, mm, along x."""
+    half, side = 0.5 * (roller.shoe or 0.0), roller.side
+    x = half * np.linspace(-1.0, 1.0, 2 * ARC + 1)
+    y = np.sqrt(np.maximum(side * side - x * x, 0.0)) - (side - roller.radius)
+    upper = np.column_stack([x, y])
+    return np.concatenate([upper[::-1], upper[1:-1] * (1.0, -1.0)])
+
+
+def slope(design: DrumDesign, theta: Array) -> Array:
+    """Slope of the track to the right of the viewer at shaft angles (n,), rad, in the middle of a shoe."""
+    roller = design.recipe.roller
+    middle = 0.5 * (roller.inner + roller.outer)
+    return np.asarray(sense(design) * np.arctan2(design.law.derivatives(theta, 1)[1], middle))
 
 
 def _arm(design: DrumDesign, guide: Arm, theta: Array, size: float) -> list[MovingBody]:
@@ -112,9 +138,18 @@ def _carriage(design: DrumDesign, theta: Array, size: float) -> list[MovingBody]
     block = box(beside - half, low - 2.4 * size, beside + half, high + 2.4 * size)
     ends = tuple(_roller(design, x, z) for z in heights)
     pose = poses(0.0, lift, 0.0)
+    if recipe.roller.shoe is not None:
+        turned = MovingBody(
+            "shoe", "follower", (_roller(design, 0.0, 0.0),), poses(x, low + lift, slope(design, theta))
+        )
+        pinned = MovingBody("rollers", "follower", (pin(size, x, low),), pose)
+    else:
+        turned = MovingBody("rollers", "follower", (*ends, *(pin(size, x, z) for z in heights)), pose)
+        pinned = None
     return [
         MovingBody("rail", "ground", (FilledShape("fixed", (rail,), "rail"),), still()),
-        MovingBody("rollers", "follower", (*ends, *(pin(size, x, z) for z in heights)), pose),
+        turned,
+        *([] if pinned is None else [pinned]),
         MovingBody(
             "carriage",
             "follower",
@@ -139,7 +174,7 @@ class Touched(NamedTuple):
 
 def touched(design: DrumDesign, name: str) -> Touched:
     """Both ends of the line along which a flank carries the roller."""
-    flank, theta = design.flanks[name], np.linspace(0.0, 2.0 * math.pi, LINES + 1)
+    flank, theta = design.flanks[name], np.linspace(0.0, design.recipe.period, LINES + 1)
     ends = carried_from(design, name, theta), outer_end(design, name, theta)
     carries = ends[0] < ends[1]
     low, high = (np.where(carries, flank.along(theta, rho).angle, np.nan) for rho in ends)

@@ -91,7 +91,7 @@ def tips(flank: Flank, low: float, high: float) -> list[Tip]:
     An undercut that reaches the blank has its tip there.
     """
     knots = breaks_of(flank)
-    theta = np.unique(np.concatenate([np.linspace(knots[0], knots[-1], SEEK + 1), knots]))
+    theta = np.unique(np.concatenate([np.linspace(knots[0], knots[-1], round(SEEK * flank.period / TURN) + 1), knots]))
     reach = _reach(flank, theta, low, high)
     if not (reach > low).any():
         return []
@@ -112,7 +112,7 @@ def tips(flank: Flank, low: float, high: float) -> list[Tip]:
                 at, r = float(near[k]), float(reached[k])
             step /= 24.0
         rho = float(flank.on(np.array([at]), r).rho[0])
-        found.append(Tip(rho, r, math.fmod(at, TURN)))
+        found.append(Tip(rho, r, math.fmod(at, flank.period)))
     return sorted(found, key=lambda tip: tip.at)
 
 
@@ -155,14 +155,14 @@ def below(flank: Flank, low: float, high: float) -> tuple[float, float]:
             a, b = np.where(less, middle, a), np.where(less, b, middle)
         return np.where(under.any(axis=0), b, 0.0)
 
-    greatest, at = greatest_of(reach, TURN)
+    greatest, at = greatest_of(reach, flank.period)
     return (greatest, at) if greatest else (0.0, math.nan)
 
 
 def demand_regular(flank: Flank, low: float, high: float) -> None:
     """Raise CurveError where it is not proved that a flank is regular from radius `low` to `high`, mm."""
     knots = breaks_of(flank)
-    theta = np.unique(np.concatenate([np.linspace(knots[0], knots[-1], CELLS + 1), knots]))
+    theta = np.unique(np.concatenate([np.linspace(knots[0], knots[-1], round(CELLS * flank.period / TURN) + 1), knots]))
     edges = np.linspace(low, high, PARTS + 1)
     n = theta.size - 1
     a, b = np.tile(theta[:-1], PARTS), np.tile(theta[1:], PARTS)

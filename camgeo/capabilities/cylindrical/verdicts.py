@@ -39,6 +39,8 @@ def intended(design: DrumDesign, mm: float = 1.0) -> intent.DrumIntent:
     led: dict[str, Any] = recipe.guide.intended()
     if roller.taper:
         led |= {"taper": roller.taper, "at": roller.at}
+    if roller.shoe is not None:
+        led["shoe"] = roller.shoe
     bore = None if design.bore is None else holes_of(Body(recipe.height, (design.bore,)))[0]
     return intent.DrumIntent(
         DrumFollower(roller.radius, roller.inner, roller.outer, recipe.level, design.law, turns=recipe.turns, **led),

@@ -447,7 +447,9 @@ def test_remedies_hold(limit: str, words: str, change: tuple[str, str], tmp_path
     assert exported(tmp_path, changed(text, change)).ok
 
 
-@pytest.mark.parametrize("name", ["cylindrical", "cylindrical-rib", "cylindrical-end", "cylindrical-arm"])
+@pytest.mark.parametrize(
+    "name", ["cylindrical", "cylindrical-rib", "cylindrical-end", "cylindrical-arm", "cylindrical-screw"]
+)
 def test_starters_are_drums(name: str, tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     assert main(["new", name]) == 0
     (tmp_path / "it.yaml").write_text(capsys.readouterr().out, encoding="utf-8")

@@ -45,7 +45,11 @@ ASLANT = changed(
 )
 REFUSED = [
     (GROOVE, ("radius: 50", "rdius: 50"), "cam.rdius: unknown key; did you mean radius?"),
-    (GROOVE, ("kind: cylindrical", "kind: cylindrical\n  turns: 3"), "cam.turns: not made yet; leave it out"),
+    (
+        GROOVE,
+        ("kind: cylindrical", "kind: cylindrical\n  turns: 3"),
+        "the segments do not fill their angle, given 360 degrees; let them cover 3 turns",
+    ),
     (GROOVE, ("radius: 10,", "radius: 10, arm: {length: 80},"), "cam.follower.arm.offset: missing"),
     (GROOVE, ("radius: 10,", "kind: cone, radius: 10,"), "a conical roller is a roller with a taper"),
     (GROOVE, ("radius: 10,", "radius: 10, at: 40,"), "cam.follower.at: cannot stand without taper; leave it out"),
@@ -117,7 +121,7 @@ REFUSED = [
     (TOP, ("length: 80", "length: 9"), None),
     (BOTTOM, ("pitch_height: 20", "pitch_height: -20"), "give more than -10 mm"),
     (GROOVE, ("{groove: {depth: 12.5}}", "{groove: {depth: 9}, end: top}"), "cam.track"),
-    (GROOVE, ("{dwell: 60}", "{dwell: 61}"), "a track of several turns is not made yet"),
+    (GROOVE, ("{dwell: 60}", "{dwell: 61}"), "a track of several turns has cam.turns"),
     (GROOVE, (", {dwell: 60}]", "]"), "let them cover the whole turn, 360 degrees"),
     (GROOVE, ("return: 40", "return: 39"), "the motion does not join"),
     (GROOVE, ("[stl]", "[{dxf: {at: [36]}}]"), "no flank there, given 36 mm; give one from 37.5 mm to 50 mm"),
@@ -195,7 +199,10 @@ def test_other_words_for_the_kind(word: str, tmp_path: Path) -> None:
     with pytest.raises(RecipeErrors) as error:
         camgeo.load(path)
     assert str(error.value).endswith(f"cam.kind: not one of the choices, given '{word}'; give cylindrical")
-    with pytest.raises(ValueError, match="there is cylindrical, cylindrical-rib, cylindrical-end and cylindrical-arm"):
+    with pytest.raises(
+        ValueError,
+        match="there is cylindrical, cylindrical-rib, cylindrical-end, cylindrical-arm and cylindrical-screw",
+    ):
         starter(word)
 
 
