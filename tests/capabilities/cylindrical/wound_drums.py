@@ -72,6 +72,13 @@ def text_of(rows: Sequence[Row], *, radius: float, depth: float, width: float, l
     )
 
 
+SCREW_ROWS: list[Row] = [(55.0, 1080.0, 90.0, 90.0), (-55.0, 1080.0, 90.0, 90.0)]
+SCREW = text_of(SCREW_ROWS, radius=30.0, depth=6.0, width=10.0, length=55.0)
+"""The screw of the worked case, 20 mm a turn, with reversals."""
+SPIRAL_ROWS: list[Row] = [(60.0, 1080.0, 60.0, 80.0), (-60.0, 360.0, 80.0, 60.0)]
+SPIRAL = text_of(SPIRAL_ROWS, radius=40.0, depth=6.0, width=8.0, length=26.0, more="rotation: ccw\n")
+
+
 def random_track(rng: Random) -> tuple[list[Row], str]:
     """Rows of a random screw, or of a spiral with a quick return, and the text of its recipe."""
     radius = rng.uniform(25.0, 45.0)
