@@ -419,7 +419,7 @@ def test_solid_and_development_are_judged_over_all_turns(text: str, tmp_path: Pa
     [
         (
             "return: 55.0, over: 1080.0, law: {uniform: {blend: [90.0, 90.0]}}",
-            "return: 55.0, over: 1080.0, law: cycloidal",
+            "return: 55.0, over: 1080.0, law: {uniform: {blend: [70.0, 130.0]}}",
         ),
         ("pitch_height: 13.0", "pitch_height: 13.1"),
         ("cam:\n", "rotation: ccw\ncam:\n"),
@@ -427,7 +427,7 @@ def test_solid_and_development_are_judged_over_all_turns(text: str, tmp_path: Pa
     ],
 )
 def test_the_solid_of_another_screw_is_refused(plant: tuple[str, str], tmp_path: Path) -> None:
-    """Verify with the recipe of the screw: a return by another law, a lower place, mirrored, a narrower groove.
+    """Verify with the recipe of the screw: a return with other blends, a higher place, mirrored, a narrower groove.
 
     The screw's motion is its own mirror image; with an offset start that of a drum turning the other way is not.
     """

@@ -87,7 +87,7 @@ def random_track(rng: Random) -> tuple[list[Row], str]:
     back = out if rng.random() < 0.5 else rng.choice([1, 2])
     stroke = out * width * rng.uniform(1.9, 2.6)
     shift = rng.uniform(-60.0, 60.0)
-    blends = [rng.uniform(60.0, 100.0) for _ in range(4)]
-    rows = [(stroke, out * 360.0 + shift, *blends[:2]), (-stroke, back * 360.0 - shift, *blends[2:])]
+    first, second, third, last = (rng.uniform(60.0, 100.0) for _ in range(4))
+    rows: list[Row] = [(stroke, out * 360.0 + shift, first, second), (-stroke, back * 360.0 - shift, third, last)]
     more = "rotation: ccw\n" if rng.random() < 0.5 else ""
     return rows, text_of(rows, radius=radius, depth=depth, width=width, length=width * rng.uniform(2.0, 9.0), more=more)
