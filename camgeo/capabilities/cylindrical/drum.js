@@ -24,6 +24,8 @@ function playDrum(data, kept = null) {
     if (v === null) return () => row.c;
     return (share) => {
       const x = (share - Math.floor(share)) * count;
+      const near = Math.round(x);
+      if (Math.abs(x - near) < 1e-9) return v[near % v.length] ?? NaN; // at a value it counts alone
       const i = Math.floor(x);
       const [a, b] = [v[i % v.length], v[(i + 1) % v.length]];
       return a === null || b === null ? NaN : a + (x - i) * (b - a);

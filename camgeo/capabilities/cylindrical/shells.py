@@ -23,6 +23,7 @@ TURN = 2.0 * math.pi
 PLACES = 240  # of a turn, at which heights are known
 COARSE = 2e-4  # of the blank: to this a line is drawn
 DEEP = 5  # shells from the floor to the blank, of which the blank is the last
+EXACT = 1e-9  # of the distance between two places
 LONGEST = 200  # places of a band
 FACE, RIM = 48, 8  # chords of a half that is seen, and of a strip of the far half beside the core
 
@@ -129,13 +130,19 @@ def seen(of: Shell, turn: float, low: float, high: float, chords: int) -> list[A
     """
     psi = np.linspace(low, high, chords + 1)
     x, at = of.radius * np.sin(psi), np.mod(psi + turn, TURN) * (PLACES / TURN)
-    places = np.arange(PLACES + 1)
     found = []
     for band in of.bands:
-        bottom, top = (np.column_stack([x, np.interp(at, places, np.append(z, z[0]))]) for z in band)
+        bottom, top = (np.column_stack([x, _between(z, at)]) for z in band)
         there = runs(np.isfinite(bottom[:, 1] + top[:, 1]))
         found += [np.concatenate([bottom[run], top[run][::-1]]) for run in there]
     return found
+
+
+def _between(z: Array, at: Array) -> Array:
+    """Heights, mm (n,), at places between known ones (PLACES,), which count alone at one of them."""
+    near = np.rint(at)
+    found = np.interp(at, np.arange(PLACES + 1), np.append(z, z[0]))
+    return np.where(np.abs(at - near) < EXACT, z[near.astype(np.intp) % PLACES], found)
 
 
 def runs(good: Mask) -> list[Indices]:

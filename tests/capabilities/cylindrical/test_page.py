@@ -24,6 +24,7 @@ from capabilities.cylindrical.made_drums import (
     shared_design,
 )
 from capabilities.cylindrical.positions import Lift, envelope
+from capabilities.cylindrical.wound_drums import SCREW, SCREW_ROWS, SPIRAL, Pins
 from support.browser import Browser, executable
 
 import camgeo
@@ -89,6 +90,32 @@ def test_a_drum_is_shown_without_what_is_cut_away() -> None:
     assert "<title>undercut</title>" in pressure_map(design)
 
 
+@pytest.mark.costly("rows of a screw are known at many places")
+def test_a_screw_is_shown_with_the_metal_between_its_tracks() -> None:
+    """On the blank a place is metal where no pin has been; the development has all tracks, and a ring a crossing."""
+    design = design_of(SCREW)
+    pins, radius, turn = Pins(SCREW_ROWS, 5.0), 29.0, 0.7
+    outlines = near(shell(design, radius), turn)
+    psi = np.linspace(-1.4, 1.4, 57)
+    for at, z in ((at, z) for at in psi.tolist() for z in np.linspace(1.0, design.recipe.height - 1.0, 60).tolist()):
+        x, phi = radius * math.sin(at), at + turn
+        place = np.array([[radius * math.cos(phi), radius * math.sin(phi), z]])
+        away = float(pins.away(place, design.recipe.level).min())
+        if abs(away) > 0.25:
+            assert (away > 0.0) == any(encloses(outline, x, z) for outline in outlines), (at, z)
+    drawn = development(design)
+    assert drawn.count('class="crossing"') == 5
+    assert drawn.count('class="line"') == 2 * 6
+
+
+def encloses(outline: np.ndarray, x: float, z: float) -> bool:
+    """Whether a place lies within a closed outline, by the edges to one side of it."""
+    (x0, z0), (x1, z1) = outline.T, np.roll(outline, -1, axis=0).T
+    over = (x0 <= x) != (x1 <= x)
+    share = (x - x0[over]) / (x1[over] - x0[over])
+    return bool(np.count_nonzero(z0[over] + share * (z1[over] - z0[over]) > z) % 2)
+
+
 def numbers(path: str) -> np.ndarray:
     return np.array(re.findall(r"-?[\d.]+", path), dtype=float).reshape(-1, 2)
 
@@ -145,15 +172,16 @@ def test_a_page_shows_drum_and_map_and_asks_for_nothing(tmp_path: Path) -> None:
 
 @pytest.mark.slow
 @pytest.mark.skipif(executable() is None, reason="no browser")
-@pytest.mark.parametrize("text", [GROOVE, RIB, CCW, UNDERCUT, RIB_ON_ARM, CONE])
+@pytest.mark.parametrize("text", [GROOVE, RIB, CCW, UNDERCUT, RIB_ON_ARM, CONE, SCREW, SPIRAL])
 def test_the_script_draws_the_same(tmp_path: Path, text: str) -> None:
     """At an angle between the values that a page has, and at one of them."""
     text = text.replace("files: [stl]", "files: [html]")
     (tmp_path / "drum.yaml").write_text(text, encoding="utf-8")
     page = camgeo.export(tmp_path / "drum.yaml", tmp_path).files[-1].path
+    turns = design_of(text).recipe.turns
     with Browser(tmp_path / "profile") as browser:
         for step in (0, 150, 301):
-            browser.open(page.as_uri() + f"#deg={0.5 * step}")
+            browser.open(page.as_uri() + f"#deg={0.5 * step * turns}")
             ask = '[...document.querySelectorAll("#drawing .drum path")].map((p) => p.getAttribute("d"))'
             found = browser.ask(ask)
             bodies = scene(design_of(text), step).bodies

@@ -16,7 +16,15 @@ from typing import TYPE_CHECKING
 import numpy as np
 import pytest
 from capabilities.cylindrical.made_drums import changed, design_of, recipe_of
-from capabilities.cylindrical.wound_drums import Pins, Row, random_track, text_of
+from capabilities.cylindrical.wound_drums import (
+    SCREW,
+    SCREW_ROWS,
+    SPIRAL,
+    SPIRAL_ROWS,
+    Pins,
+    random_track,
+    text_of,
+)
 from support.heavy import trimesh
 
 import camgeo
@@ -71,11 +79,6 @@ def held(design: DrumDesign) -> Mesh:
 
 BRUTE = "places all over a solid are held against pins at all angles of several turns"
 DRUMS = "corners of crossings and figures of drums of several turns, in several of them"
-SCREW_ROWS: list[Row] = [(55.0, 1080.0, 90.0, 90.0), (-55.0, 1080.0, 90.0, 90.0)]
-SCREW = text_of(SCREW_ROWS, radius=30.0, depth=6.0, width=10.0, length=55.0)
-"""The screw of the worked case, 20 mm a turn, with reversals."""
-SPIRAL_ROWS: list[Row] = [(60.0, 1080.0, 60.0, 80.0), (-60.0, 360.0, 80.0, 60.0)]
-SPIRAL = text_of(SPIRAL_ROWS, radius=40.0, depth=6.0, width=8.0, length=26.0, more="rotation: ccw\n")
 
 
 @cache
@@ -416,7 +419,7 @@ def test_solid_and_development_are_judged_over_all_turns(text: str, tmp_path: Pa
     [
         (
             "return: 55.0, over: 1080.0, law: {uniform: {blend: [90.0, 90.0]}}",
-            "return: 55.0, over: 1080.0, law: cycloidal",
+            "return: 55.0, over: 1080.0, law: {uniform: {blend: [70.0, 130.0]}}",
         ),
         ("pitch_height: 13.0", "pitch_height: 13.1"),
         ("cam:\n", "rotation: ccw\ncam:\n"),
@@ -424,7 +427,7 @@ def test_solid_and_development_are_judged_over_all_turns(text: str, tmp_path: Pa
     ],
 )
 def test_the_solid_of_another_screw_is_refused(plant: tuple[str, str], tmp_path: Path) -> None:
-    """Verify with the recipe of the screw: a return by another law, a lower place, mirrored, a narrower groove.
+    """Verify with the recipe of the screw: a return with other blends, a higher place, mirrored, a narrower groove.
 
     The screw's motion is its own mirror image; with an offset start that of a drum turning the other way is not.
     """

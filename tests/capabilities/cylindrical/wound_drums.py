@@ -72,6 +72,13 @@ def text_of(rows: Sequence[Row], *, radius: float, depth: float, width: float, l
     )
 
 
+SCREW_ROWS: list[Row] = [(55.0, 1080.0, 90.0, 90.0), (-55.0, 1080.0, 90.0, 90.0)]
+SCREW = text_of(SCREW_ROWS, radius=30.0, depth=6.0, width=10.0, length=55.0)
+"""The screw of the worked case, 20 mm a turn, with reversals."""
+SPIRAL_ROWS: list[Row] = [(60.0, 1080.0, 60.0, 80.0), (-60.0, 360.0, 80.0, 60.0)]
+SPIRAL = text_of(SPIRAL_ROWS, radius=40.0, depth=6.0, width=8.0, length=26.0, more="rotation: ccw\n")
+
+
 def random_track(rng: Random) -> tuple[list[Row], str]:
     """Rows of a random screw, or of a spiral with a quick return, and the text of its recipe."""
     radius = rng.uniform(25.0, 45.0)
@@ -80,7 +87,7 @@ def random_track(rng: Random) -> tuple[list[Row], str]:
     back = out if rng.random() < 0.5 else rng.choice([1, 2])
     stroke = out * width * rng.uniform(1.9, 2.6)
     shift = rng.uniform(-60.0, 60.0)
-    blends = [rng.uniform(60.0, 100.0) for _ in range(4)]
-    rows = [(stroke, out * 360.0 + shift, *blends[:2]), (-stroke, back * 360.0 - shift, *blends[2:])]
+    first, second, third, last = (rng.uniform(60.0, 100.0) for _ in range(4))
+    rows: list[Row] = [(stroke, out * 360.0 + shift, first, second), (-stroke, back * 360.0 - shift, third, last)]
     more = "rotation: ccw\n" if rng.random() < 0.5 else ""
     return rows, text_of(rows, radius=radius, depth=depth, width=width, length=width * rng.uniform(2.0, 9.0), more=more)
