@@ -21,6 +21,7 @@ from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
+from kin.cylindrical.guide import Slide
 from kin.cylindrical.lifts import BINS, widened
 from kin.numeric.angles import TURN
 from kin.numeric.records import dataclass
@@ -28,6 +29,7 @@ from kin.numeric.records import dataclass
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
+    from kin.cylindrical.guide import Guide
     from kin.cylindrical.lifts import Lifts
     from kin.law.contacts import Side
     from kin.numeric.arrays import Array, Indices, Mask
@@ -92,6 +94,14 @@ class Worst(NamedTuple):
     bend: Array
 
 
+class Course(NamedTuple):
+    """What leads a roller, and its radius, mm: `base` at the cam's axis, growing by `growth` along the roller."""
+
+    guide: Guide
+    base: float
+    growth: float
+
+
 @dataclass(frozen=True, eq=False)
 class Gauge:
     """A roller of `radius`, mm, on a flank on its `side`, its axis at `level` above z = 0 at lift 0.
@@ -112,6 +122,11 @@ class Gauge:
     def lever(self) -> float:
         """Travel of the roller's axis, mm, for one of the motion."""
         return 1.0
+
+    @property
+    def course(self) -> Course:
+        """What leads the roller, and its radius along it."""
+        return Course(Slide(0.0, self.level), self.radius, 0.0)
 
     @property
     def reach(self) -> float:
