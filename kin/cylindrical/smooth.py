@@ -60,7 +60,7 @@ BINS = 2048  # parts of a turn, for each of which the roller is held
 WINDOW, ROOM, MOST_WINDOW = 0.004, 1.5, 0.1  # rad, about the worst angle, within which F falls; one with room; greatest
 LOOKS, DEPTHS, PARTINGS = 720, 8, 4  # cells of the proof that a flank is regular, and how often they are halved
 JUMP = 1e-9  # of the greatest jump of S'', mm per rad^2, below which one is rounding
-SHIFT = 4.0  # times what is seen: the greatest way that a roller may give, for which bounds are true
+SHIFT = 2.0  # times what is seen, and half the tolerance: ways that a roller may give, for which bounds are true
 NEARER = 2e-4  # of a radius, by which chords of the control points of a cell lie nearer to the axis
 LOOSE = 1e-7  # rad, by which two faces may miss one another
 
@@ -98,7 +98,7 @@ class SeenSmooth(NamedTuple):
 class _Cells(NamedTuple):
     """Cells (n,): control points (n, p + 1, q + 1, 3), and where t begins and ends (n, 2).
 
-    Of a corner, (n, 2, 2) each, the first index is that of s: worst angle, H, its slope, K cos d and G.
+    Of a corner, (n, 2, 2) each, the first index is that of s: worst angle, H, its slope, K cos d and G; q, y, X and v.
     """
 
     nets: Array
@@ -108,6 +108,10 @@ class _Cells(NamedTuple):
     rate: Array
     distance: Array
     gives: Array
+    q: Array
+    y: Array
+    along: Array
+    v: Array
 
     def take(self, which: Mask | Indices) -> _Cells:
         return _Cells(*(rows[which] for rows in self))
@@ -184,9 +188,10 @@ def _measured(gauge: Gauge, nets: Array, lines: Array) -> _Cells:
     q, size = y - axis.y, base + growth * x
     with np.errstate(invalid="ignore", divide="ignore"):
         depth = np.sqrt(size * size - q * q)
-        height = gauge.side * (axis.z - points[:, 2]) + depth
+        v = gauge.side * (axis.z - points[:, 2])
         rate = gauge.side * axis.z1 + (size * growth * y + q * (x + axis.y1)) / depth
-    theta, *rest = (row.reshape(corners.shape[:3]) for row in (theta, height, rate, held.away, held.gives))
+    found = theta, v + depth, rate, held.away, held.gives, q, y, x, v
+    theta, *rest = (row.reshape(corners.shape[:3]) for row in found)
     theta = theta[:, :1, :1] + np.remainder(theta - theta[:, :1, :1] + math.pi, TURN) - math.pi
     return _Cells(nets, lines, theta, *rest)
 
@@ -219,7 +224,7 @@ class _Look:
         gauge.demand_bounded()
         if not all(bool((np.isfinite(each.height) & np.isfinite(each.gives)).all()) for each in cells):
             raise UnsettledError("a part of the surface is nowhere near the flank")
-        self.shift = SHIFT * max(float(np.abs(each.gives).max()) for each in cells) + self.tolerance
+        self.shift = SHIFT * max(float(np.abs(each.gives).max()) for each in cells) + 0.5 * self.tolerance
         far = max(float(np.abs(each.distance).max()) for each in cells) > FAR * self.tolerance
         if not far:
             # between control points a surface may lie a little nearer to the axis
@@ -336,7 +341,7 @@ def _bounds(gauge: Gauge, cells: _Cells, shift: float) -> _Bounds:
     turned = [x * c + y * s, y * c - x * s, z]
     tau = cells.theta - middle[:, None, None]
     low, high = tau.min(axis=(1, 2)), tau.max(axis=(1, 2))
-    bent, apart = [], []
+    seen, bent, apart = [], [], []
     jumps = _jumping(gauge, low + middle, high + middle)
     for axis in (1, 2):
         px, py, pz = (_jet(part, axis) for part in turned)
@@ -349,7 +354,11 @@ def _bounds(gauge: Gauge, cells: _Cells, shift: float) -> _Bounds:
         led = guide.jets(lift, _slopes(gauge, angle, middle), lift.constant(0.0))
         cosine, sine = cos(angle), sin(angle)
         across, along = py * cosine - px * sine, px * cosine + py * sine
-        q, v, size = across - led.y, (led.z - pz) * side, along * growth + base
+        seen.append(((across - led.y, across, along, (led.z - pz) * side), led))
+    for parts in zip(*(own for own, _ in seen), cells[-4:], strict=True):
+        _sharpen(*parts)
+    for (q, across, along, v), led in seen:
+        size = along * growth + base
         depth = sqrt(size * size - q * q)
         height, reach = v + depth, sqrt(q * q + v * v) - size
         rate = (size * across * growth + q * (along + led.y1)) / depth + led.z1 * side
@@ -370,6 +379,16 @@ def _bounds(gauge: Gauge, cells: _Cells, shift: float) -> _Bounds:
         np.stack([h1 + k1 + gauge.radius * q1, h2 + k2 + gauge.radius * q2]),
         path,
     )
+
+
+def _sharpen(by_s: BallJet, by_t: BallJet, corners: Array) -> None:
+    """Take from what is bilinear between corners (n, 2, 2) a closer enclosure of jets by s and by t."""
+    off = 0.25 * (by_s.rows[2].magnitude + by_t.rows[2].magnitude)
+    for jet in (by_s, by_t):
+        low, high = jet.rows[0].bounds()
+        low = np.maximum(low, corners.min(axis=(1, 2)) - off)
+        value = Ball.between(low, np.maximum(np.minimum(high, corners.max(axis=(1, 2)) + off), low))
+        jet.mid[0], jet.rad[0] = value.mid, value.rad
 
 
 def _jumping(gauge: Gauge, low: Array, high: Array) -> Mask:
