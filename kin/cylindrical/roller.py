@@ -323,6 +323,11 @@ class Gauge:
         stand = self.stand(points, theta)
         return Worst(theta, stand.gives, self._distance(theta, stand), np.maximum(bend, 0.0))
 
+    def peaked(self, points: Array) -> Array:
+        """Angles (n,), rad, near a peak of F of points (n, 3), of several near any of them."""
+        place = Place(np.arctan2(points[:, 1], points[:, 0]), np.hypot(points[:, 0], points[:, 1]), points[:, 2])
+        return self._climbed(self._guessed(place.phi, place.r), place)
+
     def _distance(self, theta: Array, stand: Stand) -> Array:
         """Distance (n,), mm, of points from the flank, into the metal, near angles where F is greatest.
 

@@ -61,6 +61,7 @@ WINDOW, ROOM, MOST_WINDOW = 0.004, 1.5, 0.1  # rad, about the worst angle, withi
 LOOKS, DEPTHS, PARTINGS = 720, 8, 4  # cells of the proof that a flank is regular, and how often they are halved
 JUMP = 1e-9  # of the greatest jump of S'', mm per rad^2, below which one is rounding
 SHIFT = 2.0  # times what is seen, and half the tolerance: ways that a roller may give, for which bounds are true
+LOST = 0.05  # of the radius, by the radian: where F is steeper no peak is near
 NEARER = 2e-4  # of a radius, by which chords of the control points of a cell lie nearer to the axis
 LOOSE = 1e-7  # rad, by which two faces may miss one another
 
@@ -162,8 +163,9 @@ def _parted(nets: Array, count: Indices) -> tuple[Array, Indices, Array]:
 
 def off_flank(gauge: Gauge, surface: Smooth) -> float:
     """Distance, mm, of half of the corners of a surface from a flank, and no less of the other half."""
-    cells = _measured(gauge, surface.nets, surface.lines)
-    off = np.where(cells.height < gauge.largest, np.abs(cells.distance), np.inf)
+    points = surface.nets[:, [0, -1]][:, :, [0, -1]].reshape(-1, 3)
+    height, _, distance, *_ = _standing(gauge, points, gauge.peaked(points))
+    off = np.where(height < gauge.largest, np.abs(distance), np.inf)
     return float(np.median(np.where(np.isfinite(off), off, np.inf)))
 
 
@@ -178,22 +180,31 @@ def _turned(nets: Array) -> Array:
 def _measured(gauge: Gauge, nets: Array, lines: Array) -> _Cells:
     corners = nets[:, [0, -1]][:, :, [0, -1]]
     points = corners.reshape(-1, 3)
-    theta = gauge.worst(points).theta
+    theta = gauge.peaked(points)
+    rows = _standing(gauge, points, theta)
+    # one peak is proved later on; where none was found by climbing, it is sought
+    lost = np.flatnonzero(~(np.abs(rows[1]) < LOST * gauge.radius))
+    if len(lost):
+        theta[lost] = gauge.worst(points[lost]).theta
+        rows[:, lost] = _standing(gauge, points[lost], theta[lost])
+    theta, *rest = (row.reshape(corners.shape[:3]) for row in (theta, *rows))
+    theta = theta[:, :1, :1] + np.remainder(theta - theta[:, :1, :1] + math.pi, TURN) - math.pi
+    return _Cells(nets, lines, theta, *rest)
+
+
+def _standing(gauge: Gauge, points: Array, theta: Array) -> Array:
+    """H and its slope, K cos d, G, q, y, X and v (8, n) of points (n, 3) at angles (n,), rad."""
     rows = gauge.lifts.at(theta)
     sine, cosine = np.sin(theta), np.cos(theta)
     held = gauge.held(list(points.T), rows[0], sine, cosine)
     guide, base, growth = gauge.course
     axis = guide.axis(*rows)
     x, y = points[:, 0] * cosine + points[:, 1] * sine, points[:, 1] * cosine - points[:, 0] * sine
-    q, size = y - axis.y, base + growth * x
+    q, size, v = y - axis.y, base + growth * x, gauge.side * (axis.z - points[:, 2])
     with np.errstate(invalid="ignore", divide="ignore"):
         depth = np.sqrt(size * size - q * q)
-        v = gauge.side * (axis.z - points[:, 2])
         rate = gauge.side * axis.z1 + (size * growth * y + q * (x + axis.y1)) / depth
-    found = theta, v + depth, rate, held.away, held.gives, q, y, x, v
-    theta, *rest = (row.reshape(corners.shape[:3]) for row in found)
-    theta = theta[:, :1, :1] + np.remainder(theta - theta[:, :1, :1] + math.pi, TURN) - math.pi
-    return _Cells(nets, lines, theta, *rest)
+    return np.stack([v + depth, rate, held.away, held.gives, q, y, x, v])
 
 
 def look(gauge: Gauge, surfaces: Sequence[Smooth], tolerance: float, angles: int) -> SeenSmooth:
