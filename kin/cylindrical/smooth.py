@@ -292,9 +292,7 @@ class _Look:
 
     def _hold(self, cells: _Cells, bounds: _Bounds, done: Mask) -> None:
         """Take in the edges of cells that are done."""
-        least = np.stack(
-            [bounds.given(cells.height[:, :, k].min(axis=1) - bounds.height)[0] for k in (0, 1)], axis=1
-        )
+        least = np.stack([bounds.given(cells.height[:, :, k].min(axis=1) - bounds.height)[0] for k in (0, 1)], axis=1)
         inside = (bounds.along[0] >= self.gauge.inner) & (bounds.along[1] <= self.gauge.outer)
         self.edges.add(cells.take(done), np.where(inside[:, None], least, -np.inf)[done])
 
@@ -440,7 +438,7 @@ def _slopes(gauge: Gauge, angle: BallJet, middle: Array) -> BallJet:
 def _gaps(
     gauge: Gauge, cells: _Cells, places: _Places, angles: tuple[Array, Array], steepness: tuple[Array, float]
 ) -> tuple[Array, Array, tuple[Array, Array]]:
-    """How far F rises above H (n,), and the depth above -K (n,), mm; infinite where F is not known to fall; bounds of m.
+    """How far F rises above H (n,), and the depth above -K (n,), mm, infinite where F is not known to fall; and m.
 
     `places` are those over cells whose worst angles lie between `angles`; `steepness` are a bound of |F_theta|, mm per
     rad, and how far rollers are shifted, mm.

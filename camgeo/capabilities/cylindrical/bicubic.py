@@ -170,10 +170,6 @@ class _Axis(NamedTuple, Generic[Number]):
     z1: Number
     z2: Number
 
-    def to(self, order: int) -> _Axis[Number]:
-        """The first rows of each."""
-        return _Axis(*(_to(part, order) for part in self))
-
 
 class _Touch(NamedTuple, Generic[Number]):
     """Contact at rho, as series: q, the height h, side R, sin a, cos a and 1/M."""
@@ -201,6 +197,10 @@ def _to(series: Number, order: int) -> Number:
     while series.order > order:
         series = series.lower()
     return series
+
+
+def _axis_to(axis: _Axis[Number], order: int) -> _Axis[Number]:
+    return _Axis(*(_to(part, order) for part in axis))
 
 
 def _touch(flank: Flank, axis: _Axis[Number], rho: Number) -> _Touch[Number]:
@@ -253,16 +253,16 @@ def _bounds(flank: Flank, look: Array, ends: tuple[float, float]) -> _Bounds:
     # by theta: the frame itself turns
     rho = here
     for order in range(4):
-        rho = _rates(flank, axis.to(order), rho).rho.integral(start)
+        rho = _rates(flank, _axis_to(axis, order), rho).rho.integral(start)
     tau = BallJet.variable(low, high, 4) - 0.5 * (low + high)
-    x, q, h = _place(flank, axis.to(4), rho)
+    x, q, h = _place(flank, _axis_to(axis, 4), rho)
     c, s = cos(tau), sin(tau)
     along = _size([x * c - q * s, x * s + q * c, h])
 
     rho, r = here, BallJet.variable(inner, outer, 4)
     still = _Axis(*(r.constant(row) for row in rows))
     for order in range(4):
-        rho = (_to(r, order) / _rates(flank, still.to(order), rho).out).integral(start)
+        rho = (_to(r, order) / _rates(flank, _axis_to(still, order), rho).out).integral(start)
     found = [along, _size(_place(flank, still, rho)), _size(_rate(flank, still, rho))]
     folded = [part.reshape(BLOCKS, n).max(axis=0) for part in found]
     for part in folded:
@@ -320,7 +320,7 @@ def _spline(flank: Flank, theta: Array, r: Array) -> Bicubic:
     turn, radius = np.repeat(theta, len(r)), np.tile(r, len(theta))
     start = flank.reached(pose, radius)
     still = _Axis(*(Jet(np.stack([row, 0.0 * row])) for row in pose[:6]))
-    out = _rates(flank, still.to(0), Jet(start[None])).out
+    out = _rates(flank, _axis_to(still, 0), Jet(start[None])).out
     rho = Jet(np.stack([start, radius / out.c[0]]))
     both = _place(flank, still, rho), _rate(flank, still, rho)
     (p, by_r), (by_theta, by_both) = ([_turned(parts, turn, k) for k in (0, 1)] for parts in both)

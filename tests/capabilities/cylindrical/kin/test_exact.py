@@ -161,8 +161,8 @@ def test_bounds_hold_within_cells_and_are_not_idle(kind, shaken):
     assert (most.max(axis=(1, 2)) * gauge.lever <= high + 1e-9).all()
     if known.any():
         assert (high - most.max(axis=(1, 2)) * gauge.lever)[known].max() < 0.1 * np.abs(given).max() + 1e-9
-    for risen, bound in ((risen - upright, bounds.gap), (away - nearest, bounds.under)):
-        assert (risen.max(axis=(1, 2)) <= bound + 1e-9).all()
+    for over, bound in ((risen - upright, bounds.gap), (away - nearest, bounds.under)):
+        assert (over.max(axis=(1, 2)) <= bound + 1e-9).all()
         assert np.isfinite(bound).mean() > 0.3 or shaken > 0.01
 
 
