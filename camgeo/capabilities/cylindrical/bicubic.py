@@ -103,7 +103,7 @@ def bicubics(
     breaks = breaks_of(flank)
     wanted = np.array([_snapped(angle, breaks) for angle in ends_at])
     start = float(wanted[0])
-    joints = np.append(_behind(start, np.concatenate([wanted, _jumps(flank)])), start + TURN)
+    joints = np.append(_behind(start, np.concatenate([wanted, jumps_of(flank)])), start + TURN)
     knots = np.append(_behind(start, np.concatenate([joints, breaks])), start + TURN)
     look = _distinct(np.concatenate([np.linspace(start, start + TURN, LOOKS + 1), knots]))
     look[[0, -1]] = start, start + TURN
@@ -147,7 +147,7 @@ def _behind(start: float, angles: Array) -> Array:
     return start + _distinct(np.append(0.0, offset[TURN - offset > SAME]))
 
 
-def _jumps(flank: Flank) -> Array:
+def jumps_of(flank: Flank) -> Array:
     """Shaft angles (k,), rad, at which S'' jumps; raises ToleranceError where S' does."""
     if not len(flank.law.breaks):
         return np.zeros(0)

@@ -40,6 +40,7 @@ from capabilities.cylindrical.test_random_drums import rollers
 from support.kernel import kernel
 
 import camgeo
+from camgeo.capabilities.cylindrical import brep
 from camgeo.capabilities.cylindrical.bicubic import bicubics
 from camgeo.capabilities.cylindrical.brep import drum_solid
 from camgeo.capabilities.cylindrical.exact import designed
@@ -233,6 +234,17 @@ def refused(verdict: DrumVerdict) -> set[tuple[str, str]]:
     return {(check.name, check.surface) for check in verdict.checks if not check.ok}
 
 
+# a cut at the first break of the motion lies just beside a jump of the acceleration on the upper flank
+NARROW = """cam:
+  kind: cylindrical
+  radius: 60
+  track: {rib: {distance: 36, depth: 12}}
+  follower: {radius: 9, taper: 5, arm: {length: 90, offset: -88.6, pivot: 50, side: leading}}
+  pitch_height: 34.4
+  motion: [{rise: 20, over: 120, law: modified-sine}, {dwell: 60}, {return: 20, over: 120, law: harmonic}, {dwell: 60}]
+part: {length: 90, bore: 30}
+export: {tolerance: 0.005, files: [step]}
+"""
 TRACKS = {
     "groove": STEP,
     "rib": RIB,
@@ -246,6 +258,7 @@ TRACKS = {
     "rib on an arm": RIB_ON_ARM,
     "cone": "rotation: ccw\n" + CONE,
     "beside": BESIDE,
+    "narrow": NARROW,
 }
 
 
@@ -265,6 +278,15 @@ def test_another_kernel_takes_the_solid_and_kin_both_files(tmp_path: Path, track
         assert verdict.ok, [check for check in verdict.checks if not check.ok]
         assert all(flank.measured_error <= off for flank in verdict.flanks)
         assert all(flank.motion.remainder < 0.2 * tolerance for flank in verdict.flanks)
+
+
+@kernel
+@pytest.mark.costly("a solid and its verdict")
+def test_a_part_that_is_narrower_than_deep_is_judged(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(brep, "APART", 0.0)
+    path, design, _ = written(tmp_path, NARROW, 0.001)
+    verdict = judged(path, design, 0.001)
+    assert verdict.ok, [check for check in verdict.checks if not check.ok]
 
 
 @kernel
