@@ -152,7 +152,7 @@ def test_bounds_hold_within_cells_and_are_not_idle(kind, shaken):
     # F: how far the roller would give way along z
     risen = distances(drum, points, flank, highest=True) - side * points[:, 2]
     risen = risen.reshape(len(nets), count, count)
-    given = drum.gives(theta, (along, across, z), *flank[2:0:-1], level) * gauge.lever
+    given = drum.gives(theta, (along, across, z), flank[2], side, level) * gauge.lever
     known = np.isfinite(bounds.gap) & (bounds.path[0] > 0.0)
     assert known.mean() > 0.3 or shaken > 0.01
     low = bounds.given(upright.min(axis=(1, 2)))[0]
