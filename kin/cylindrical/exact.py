@@ -239,12 +239,9 @@ def _section(shell: Shell, face: Face, *, mirrored: bool) -> Arcs:
 def _smooth(patch: Patch, *, mirrored: bool) -> Smooth:
     """Patches of a surface whose first parameter runs along the turn."""
     nets, v = patch.nets * (MIRROR if mirrored else 1.0), patch.v
-    corners = np.arctan2(patch.corners[:, 1], patch.corners[:, 0])
-    turned = np.abs(np.remainder(corners[[1, 3]] - corners[0] + math.pi, TURN) - math.pi)
-    across = patch.borders[0], patch.borders[3]
-    lengths = [float(np.linalg.norm(np.diff(border.reshape(-1, 3), axis=0), axis=1).sum()) for border in across]
-    # a patch of more than half a turn looks short by its corners
-    if turned[0] < turned[1] and lengths[0] < lengths[1]:
+    r = np.hypot(patch.corners[:, 0], patch.corners[:, 1])
+    # along the turn it stays on its cylinder, however short it is there
+    if abs(r[1] - r[0]) > abs(r[3] - r[0]):
         nets, v = nets.transpose(1, 0, 3, 2, 4), patch.u
     share = (v - v[0]) / (v[-1] - v[0])
     count, deep = nets.shape[:2]

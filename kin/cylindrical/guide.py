@@ -21,7 +21,7 @@ from typing import TYPE_CHECKING, Generic, Literal, NamedTuple, TypeAlias, TypeV
 import numpy as np
 
 from kin.numeric.arrays import Array
-from kin.numeric.elementary import Jet, cos, sin
+from kin.numeric.elementary import Ball, BallJet, Jet, cos, sin
 from kin.numeric.records import dataclass
 
 if TYPE_CHECKING:
@@ -31,14 +31,15 @@ if TYPE_CHECKING:
 
     Bounds = tuple[Array, Array]
 
-Number = TypeVar("Number", Array, Jet)
+Number = TypeVar("Number", Array, Jet, Ball, BallJet)
+Enclosed = TypeVar("Enclosed", Jet, Ball, BallJet)
 QUARTER = 0.5 * math.pi
 
 Unit: TypeAlias = Literal["mm", "deg"]
 
 
 class Axis(NamedTuple, Generic[Number]):
-    """A roller's axis across and up, mm, with two derivatives by the shaft angle, (n,) each, or jets."""
+    """A roller's axis across and up, mm, with two derivatives by the shaft angle, (n,) each, jets or balls."""
 
     y: Number
     z: Number
@@ -76,7 +77,7 @@ class Slide:
         return self.jets(lift, slope, bend)
 
     def jets(self, lift: Number, slope: Number, bend: Number) -> Axis[Number]:
-        """The roller's axis at lifts with their derivatives, as jets."""
+        """The roller's axis at lifts with their derivatives, as jets or balls."""
         still = 0.0 * lift
         return Axis(still + self.offset, lift + self.level, still, slope, still, bend)
 
@@ -132,8 +133,8 @@ class Swing:
         above: Array = z - self.pivot - self.length * np.sin(self.angle + lift)
         return above
 
-    def jets(self, lift: Jet, slope: Jet, bend: Jet) -> Axis[Jet]:
-        """The roller's axis at lifts with their derivatives, as jets."""
+    def jets(self, lift: Enclosed, slope: Enclosed, bend: Enclosed) -> Axis[Enclosed]:
+        """The roller's axis at lifts with their derivatives, as jets or balls."""
         psi = lift + self.angle
         return self._turned(cos(psi), sin(psi), slope, bend)
 

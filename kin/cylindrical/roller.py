@@ -96,6 +96,14 @@ class Worst(NamedTuple):
     bend: Array
 
 
+class Course(NamedTuple):
+    """What leads a roller, and its radius, mm: `base` at the cam's axis, growing by `growth` along the roller."""
+
+    guide: Guide
+    base: float
+    growth: float
+
+
 @dataclass(frozen=True, eq=False)
 class Gauge:
     """A roller of `radius`, mm, on a flank on its `side`, its axis at `level` above z = 0 at lift 0.
@@ -130,6 +138,11 @@ class Gauge:
     def lever(self) -> float:
         """Travel of the roller's axis, mm, for one of the motion."""
         return 1.0
+
+    @property
+    def course(self) -> Course:
+        """What leads the roller, and its radius along it."""
+        return Course(Slide(0.0, self.level), self.radius, 0.0)
 
     @property
     def reach(self) -> float:
@@ -331,6 +344,11 @@ class Gauge:
         """Polar angles (n,), rad, of points (n, 3), in the turn that brings them nearest to angles `about` (n,)."""
         phi: Array = np.arctan2(points[:, 1], points[:, 0])
         return phi if about is None else phi + TURN * np.round((about - phi) / TURN)
+
+    def peaked(self, points: Array) -> Array:
+        """Angles (n,), rad, near a peak of F of points (n, 3), of several near any of them."""
+        place = Place(np.arctan2(points[:, 1], points[:, 0]), np.hypot(points[:, 0], points[:, 1]), points[:, 2])
+        return self._climbed(self._guessed(place.phi, place.r), place)
 
     def _distance(self, theta: Array, stand: Stand) -> Array:
         """Distance (n,), mm, of points from the flank, into the metal, near angles where F is greatest.

@@ -1,18 +1,31 @@
 """A roller on a smooth surface, over all shaft angles: proved bounds of what stands out, is missing, and holds.
 
-The surface comes as Bezier patches. On a cell of one, with parameters (s, t) from 0 to 1, the angle of the worst place
-is laid bilinearly between those of the corners. There
+The surface comes as Bezier patches. A place of it is seen along the roller's axis, which is at (y0, z0) by its guide: X
+along it, y across, q = y - y0 and v = side (z0 - z), where the roller has the radius R, growing by g along it. On a
+cell of a patch, with parameters (s, t) from 0 to 1, the angle of the worst place is laid bilinearly between those of
+the corners. There
 
-    H = v + sqrt(R^2 - y^2)   and   K = hypot(y, v) - R
+    H = v + sqrt(R^2 - q^2)   and   K = hypot(q, v) - R
 
-of `kin.cylindrical.gauge` are smooth functions of (s, t), which bend by no more than balls of their second derivatives
-over the cell say: between the corners they are off what is bilinear by at most (|f_ss| + |f_tt|)/8. No place stands out
-by less than H, nor is farther within the metal than K.
+are smooth functions of (s, t), which bend by no more than balls of their second derivatives over the cell say: between
+the corners they are off what is bilinear by at most (|f_ss| + |f_tt|)/8. Over the angle, at one place, let F be that
+height by which the roller has to give way along z. No place stands out by less than H, nor is farther within the metal
+than K cos d, tan d = g.
 
-How much more it stands out is a matter of the slope by the angle, F_theta, which is bounded likewise: where F falls as
-c theta^2/2 at least, its greatest value is no more than F_theta^2/(2 c) above H. F has one peak, as the exact flank is
-regular: on a cylinder each polar angle is touched at one shaft angle alone, and that is proved first. The same serves
-hypot(y, v)^2/2, which is least near by.
+How much more it stands out is a matter of the slope by the angle, which is bounded likewise: with d = sqrt(R^2 - q^2),
+
+    F_theta = side z0' + (R g y + q (X + y0'))/d
+    -F_theta theta = (R (X + y0') + g y q)^2/d^3 + (R g X - q (y + y0''))/d - side z0'',
+
+so that where F falls as c theta^2/2 at least, its greatest value is no more than F_theta^2/(2 c) above H. F has one
+peak, as the exact flank is regular: z is but a constant in F, whose peaks are the angles at which the flank is touched
+at the polar angle and radius of the place, and that there is one alone is proved first. The same serves
+P = (q^2 + v^2 - R^2)/2, which is least near by, with P_theta = -d F_theta + F side z0' and
+P_theta theta = (X + y0')^2 - q (y + y0'') + z0'^2 + v side z0'' - g^2 y^2 + R g X.
+
+A roller that is led along a path, not along z, gives way on it by G, where F = G m for m = T_z + side q T_y/d of a
+place of the roller between both, T along its path. All of the above is true of all rollers that are shifted by some
+G as well, and is proved for these.
 
 At every shaft angle some place of a line t = const holds the roller, if the line goes round: as high as H at least.
 """
@@ -47,7 +60,8 @@ BINS = 2048  # parts of a turn, for each of which the roller is held
 WINDOW, ROOM, MOST_WINDOW = 0.004, 1.5, 0.1  # rad, about the worst angle, within which F falls; one with room; greatest
 LOOKS, DEPTHS, PARTINGS = 720, 8, 4  # cells of the proof that a flank is regular, and how often they are halved
 JUMP = 1e-9  # of the greatest jump of S'', mm per rad^2, below which one is rounding
-ALIKE = 1e-6  # of the roller's radius, within which heights by the gauge are those that are bounded here
+SHIFT = 2.0  # times what is seen, and half the tolerance: ways that a roller may give, for which bounds are true
+LOST = 0.05  # of the radius, by the radian: where F is steeper no peak is near
 NEARER = 2e-4  # of a radius, by which chords of the control points of a cell lie nearer to the axis
 LOOSE = 1e-7  # rad, by which two faces may miss one another
 
@@ -67,7 +81,7 @@ class Smooth:
 class SeenSmooth(NamedTuple):
     """What a surface shows to a roller, with proved bounds.
 
-    out    greatest height of the metal over the exact flank along z, mm, of what the roller reaches
+    out    greatest way, mm along its path, by which the roller gives to the metal that it reaches
     holds  (k,) at k equal steps of the turn: the roller stands so high over its intended place, mm, to a share of the
            tolerance; nan where nothing holds it
     least  least height at which it is held, over all angles, mm, with its angle, rad; its bound is below by `remainder`
@@ -83,25 +97,32 @@ class SeenSmooth(NamedTuple):
 
 
 class _Cells(NamedTuple):
-    """Cells (n,): control points (n, p + 1, q + 1, 3), where t begins and ends (n, 2), corners' worst angles, F and K.
+    """Cells (n,): control points (n, p + 1, q + 1, 3), and where t begins and ends (n, 2).
 
-    Of a corner, (n, 2, 2) each, the first index is that of s.
+    Of a corner, (n, 2, 2) each, the first index is that of s: worst angle, H, its slope, K cos d and G; q, y, X and v.
     """
 
     nets: Array
     lines: Array
     theta: Array
     height: Array
+    rate: Array
     distance: Array
+    gives: Array
+    q: Array
+    y: Array
+    along: Array
+    v: Array
 
     def take(self, which: Mask | Indices) -> _Cells:
         return _Cells(*(rows[which] for rows in self))
 
 
 class _Bounds(NamedTuple):
-    """Bounds over cells (n,), mm: of H and K beside what is bilinear, of F over H, of the depth under -K; rad: X.
+    """Bounds over cells (n,), mm: of H and K cos d beside what is bilinear, of F over H, of the depth under -K; X.
 
-    `skew` (2, n) are the shares of s and t in the first two. `gap` is infinite where nothing is known.
+    `skew` (2, n) are the shares of s and t in the first two, `path` bounds of m. `gap` is infinite and m from 0 where
+    nothing is known.
     """
 
     height: Array
@@ -110,6 +131,14 @@ class _Bounds(NamedTuple):
     under: Array
     along: tuple[Array, Array]
     skew: Array
+    path: tuple[Array, Array]
+
+    def given(self, height: Array) -> tuple[Array, Array]:
+        """Lower and upper bounds (n,) of G, mm, where F is `height` (n,), mm."""
+        with np.errstate(divide="ignore", invalid="ignore"):
+            ways = np.stack([height / each for each in self.path])
+        known = self.path[0] > 0.0
+        return np.where(known, ways.min(axis=0), -np.inf), np.where(known, ways.max(axis=0), np.inf)
 
 
 def cells_of(gauge: Gauge, surface: Smooth) -> _Cells:
@@ -134,8 +163,9 @@ def _parted(nets: Array, count: Indices) -> tuple[Array, Indices, Array]:
 
 def off_flank(gauge: Gauge, surface: Smooth) -> float:
     """Distance, mm, of half of the corners of a surface from a flank, and no less of the other half."""
-    cells = _measured(gauge, surface.nets, surface.lines)
-    off = np.where(cells.height < gauge.radius, np.abs(cells.distance), np.inf)
+    points = surface.nets[:, [0, -1]][:, :, [0, -1]].reshape(-1, 3)
+    height, _, distance, *_ = _standing(gauge, points, gauge.peaked(points))
+    off = np.where(height < gauge.largest, np.abs(distance), np.inf)
     return float(np.median(np.where(np.isfinite(off), off, np.inf)))
 
 
@@ -149,20 +179,32 @@ def _turned(nets: Array) -> Array:
 
 def _measured(gauge: Gauge, nets: Array, lines: Array) -> _Cells:
     corners = nets[:, [0, -1]][:, :, [0, -1]]
-    worst = gauge.worst(corners.reshape(-1, 3))
-    theta = worst.theta.reshape(corners.shape[:3])
+    points = corners.reshape(-1, 3)
+    theta = gauge.peaked(points)
+    rows = _standing(gauge, points, theta)
+    # one peak is proved later on; where none was found by climbing, it is sought
+    lost = np.flatnonzero(~(np.abs(rows[1]) < LOST * gauge.radius))
+    if len(lost):
+        theta[lost] = gauge.worst(points[lost]).theta
+        rows[:, lost] = _standing(gauge, points[lost], theta[lost])
+    theta, *rest = (row.reshape(corners.shape[:3]) for row in (theta, *rows))
     theta = theta[:, :1, :1] + np.remainder(theta - theta[:, :1, :1] + math.pi, TURN) - math.pi
-    x, y, z = np.moveaxis(corners, 3, 0)
-    across = y * np.cos(theta) - x * np.sin(theta)
-    v = gauge.side * (gauge.level + gauge.lifts.at(theta.ravel())[0].reshape(theta.shape) - z)
-    with np.errstate(invalid="ignore"):
-        height = v + np.sqrt(gauge.radius**2 - across**2)
-    known = np.abs(height) < gauge.radius
-    if bool((np.abs(height - worst.height.reshape(theta.shape))[known] > ALIKE * gauge.radius).any()):
-        raise UnsettledError(
-            "smooth flanks are judged for a cylindrical roller on a slide, whose axis is a radius: give an STL"
-        )
-    return _Cells(nets, lines, theta, height, np.hypot(across, v) - gauge.radius)
+    return _Cells(nets, lines, theta, *rest)
+
+
+def _standing(gauge: Gauge, points: Array, theta: Array) -> Array:
+    """H and its slope, K cos d, G, q, y, X and v (8, n) of points (n, 3) at angles (n,), rad."""
+    rows = gauge.lifts.at(theta)
+    sine, cosine = np.sin(theta), np.cos(theta)
+    held = gauge.held(list(points.T), rows[0], sine, cosine)
+    guide, base, growth = gauge.course
+    axis = guide.axis(*rows)
+    x, y = points[:, 0] * cosine + points[:, 1] * sine, points[:, 1] * cosine - points[:, 0] * sine
+    q, size, v = y - axis.y, base + growth * x, gauge.side * (axis.z - points[:, 2])
+    with np.errstate(invalid="ignore", divide="ignore"):
+        depth = np.sqrt(size * size - q * q)
+        rate = gauge.side * axis.z1 + (size * growth * y + q * (x + axis.y1)) / depth
+    return np.stack([v + depth, rate, held.away, held.gives, q, y, x, v])
 
 
 def look(gauge: Gauge, surfaces: Sequence[Smooth], tolerance: float, angles: int) -> SeenSmooth:
@@ -182,6 +224,7 @@ class _Look:
         self.at = dict.fromkeys(self.most, math.nan)
         self.bound = dict(self.most)
         self.lowest, self.edges = math.inf, _Held()
+        self.shift = 0.0
 
     def seen(self, cells: Sequence[_Cells], angles: int) -> SeenSmooth:
         """All that the cells show."""
@@ -189,12 +232,14 @@ class _Look:
         corners = np.concatenate([np.hypot(each.nets[..., 0], each.nets[..., 1]).ravel() for each in cells])
         if len(gauge.lifts.corners):
             raise UnsettledError("where the velocity jumps no smooth surface is the flank")
-        if not all(bool(np.isfinite(each.height).all()) for each in cells):
+        gauge.demand_bounded()
+        if not all(bool((np.isfinite(each.height) & np.isfinite(each.gives)).all()) for each in cells):
             raise UnsettledError("a part of the surface is nowhere near the flank")
+        self.shift = SHIFT * max(float(np.abs(each.gives).max()) for each in cells) + 0.5 * self.tolerance
         far = max(float(np.abs(each.distance).max()) for each in cells) > FAR * self.tolerance
         if not far:
             # between control points a surface may lie a little nearer to the axis
-            demand_regular(gauge, (1.0 - NEARER) * float(corners.min()), float(corners.max()))
+            demand_regular(gauge, (1.0 - NEARER) * float(corners.min()), float(corners.max()), self.shift)
         holds = _holds(gauge, cells, angles)
         for each in cells:
             self._settle(each, far=far)
@@ -211,23 +256,23 @@ class _Look:
     def _settle(self, cells: _Cells, *, far: bool) -> None:
         """Take in cells and their bounds; those that are far above what is reached are halved."""
         for parting in range(ROUNDS + 1):
-            bounds = _bounds(self.gauge, cells)
+            bounds = _bounds(self.gauge, cells, self.shift)
             reached = self._reached(cells)
-            top, deep = cells.height.max(axis=(1, 2)), cells.distance
-            out = np.where(reached, top + bounds.height + bounds.gap, -np.inf)
+            top, deep = cells.height.max(axis=(1, 2)) + bounds.height + bounds.gap, cells.distance
+            out = np.where(reached, bounds.given(top)[1], -np.inf)
             # what stands out by no more than that is no farther out of the metal
-            proud = np.minimum(
-                -deep.min(axis=(1, 2)) + bounds.distance + bounds.under,
-                np.maximum(top + bounds.height + bounds.gap, 0.0),
-            )
+            proud = np.minimum(-deep.min(axis=(1, 2)) + bounds.distance + bounds.under, np.maximum(top, 0.0))
             bare = deep.max(axis=(1, 2)) + bounds.distance
             if far:  # a bound that is not known says no more than what is reached
                 out, proud = (
                     np.where(np.isfinite(bound), bound, seen)
-                    for bound, seen in ((out, np.where(reached, top, -np.inf)), (proud, -deep.min(axis=(1, 2))))
+                    for bound, seen in (
+                        (out, np.where(reached, cells.gives.max(axis=(1, 2)), -np.inf)),
+                        (proud, -deep.min(axis=(1, 2))),
+                    )
                 )
-            low = cells.height.min(axis=(1, 2)) - bounds.height
-            self.lowest = min(self.lowest, float(cells.height.min()))
+            low = bounds.given(cells.height.min(axis=(1, 2)) - bounds.height)[0]
+            self.lowest = min(self.lowest, float(cells.gives.min()))
             open_ = (
                 (out > self.most["out"] + self.near)
                 | (proud > max(self.most["proud"], 0.0) + self.near)
@@ -238,12 +283,18 @@ class _Look:
             done = np.ones_like(open_) if last else ~open_
             for name, values in (("out", out), ("proud", proud), ("bare", bare)):
                 self.bound[name] = max(self.bound[name], float(values[done].max(initial=-math.inf)))
-            self.edges.add(cells.take(done), bounds.height[done], self._inside(bounds)[done])
+            self._hold(cells, bounds, done)
             if last and open_.any() and not far:
                 raise UnsettledError("bounds of the flank's surface do not come close to what is reached")
             if done.all():
                 return
             cells = self._halved(cells.take(open_), bounds.skew[:, open_])
+
+    def _hold(self, cells: _Cells, bounds: _Bounds, done: Mask) -> None:
+        """Take in the edges of cells that are done."""
+        least = np.stack([bounds.given(cells.height[:, :, k].min(axis=1) - bounds.height)[0] for k in (0, 1)], axis=1)
+        inside = (bounds.along[0] >= self.gauge.inner) & (bounds.along[1] <= self.gauge.outer)
+        self.edges.add(cells.take(done), np.where(inside[:, None], least, -np.inf)[done])
 
     def _reached(self, cells: _Cells) -> Mask:
         """Cells (n,) that the roller may reach with its length; what their corners show is taken in."""
@@ -252,7 +303,7 @@ class _Look:
         along = corners[..., 0] * np.cos(cells.theta) + corners[..., 1] * np.sin(cells.theta)
         within = (along >= gauge.inner) & (along <= gauge.outer)
         for name, values in (
-            ("out", np.where(within, cells.height, -np.inf)),
+            ("out", np.where(within, cells.gives, -np.inf)),
             ("proud", -cells.distance),
             ("bare", cells.distance),
         ):
@@ -263,10 +314,6 @@ class _Look:
         r = np.hypot(cells.nets[..., 0], cells.nets[..., 1]).reshape(len(cells.nets), -1).max(axis=1)
         reached: Mask = r >= gauge.inner
         return reached
-
-    def _inside(self, bounds: _Bounds) -> Mask:
-        inside: Mask = (bounds.along[0] >= self.gauge.inner) & (bounds.along[1] <= self.gauge.outer)
-        return inside
 
     def _halved(self, cells: _Cells, skew: Array) -> _Cells:
         along = skew[0] >= skew[1]
@@ -284,16 +331,26 @@ class _Look:
 # --- bounds over cells ------------------------------------------------------------------------------------------------
 
 
-def _bounds(gauge: Gauge, cells: _Cells) -> _Bounds:
-    """Bounds over cells."""
-    side, radius = float(gauge.side), gauge.radius
+class _Places(NamedTuple):
+    """Balls over cells (n,) of q, y, X, v and R, mm."""
+
+    q: Ball
+    y: Ball
+    along: Ball
+    v: Ball
+    size: Ball
+
+
+def _bounds(gauge: Gauge, cells: _Cells, shift: float) -> _Bounds:
+    """Bounds over cells, true of rollers that give way by no more than `shift`, mm."""
+    side, (guide, base, growth) = float(gauge.side), gauge.course
     middle = cells.theta.mean(axis=(1, 2))
     c, s = np.cos(middle)[:, None, None], np.sin(middle)[:, None, None]
     x, y, z = np.moveaxis(cells.nets, 3, 0)
     turned = [x * c + y * s, y * c - x * s, z]
     tau = cells.theta - middle[:, None, None]
     low, high = tau.min(axis=(1, 2)), tau.max(axis=(1, 2))
-    bent, apart = [], []
+    seen, bent, apart = [], [], []
     jumps = _jumping(gauge, low + middle, high + middle)
     for axis in (1, 2):
         px, py, pz = (_jet(part, axis) for part in turned)
@@ -303,28 +360,44 @@ def _bounds(gauge: Gauge, cells: _Cells) -> _Bounds:
             np.stack([rows[0].mid, rows[1].mid, 0.0 * low]), np.stack([rows[0].rad, rows[1].rad, 0.0 * low])
         )
         lift = gauge.lifts.round.on(angle + Ball.exact(middle))
-        slope = _slopes(gauge, angle, middle)
+        led = guide.jets(lift, _slopes(gauge, angle, middle), lift.constant(0.0))
         cosine, sine = cos(angle), sin(angle)
         across, along = py * cosine - px * sine, px * cosine + py * sine
-        v = (lift + gauge.level - pz) * side
-        depth = sqrt(radius**2 - across * across)
-        height, reach = v + depth, sqrt(across * across + v * v)
-        rate = across * along / depth + slope * side
+        seen.append(((across - led.y, across, along, (led.z - pz) * side), led))
+    for parts in zip(*(own for own, _ in seen), cells[-4:], strict=True):
+        _sharpen(*parts)
+    for (q, across, along, v), led in seen:
+        size = along * growth + base
+        depth = sqrt(size * size - q * q)
+        height, reach = v + depth, sqrt(q * q + v * v) - size
+        rate = (size * across * growth + q * (along + led.y1)) / depth + led.z1 * side
         bent.append([2.0 * part.rows[2].magnitude for part in (height, reach, rate)])
         # where S'' jumps F_theta is off what is linear by a quarter of the span of its first derivative
         apart.append(np.where(jumps, 0.5 * rate.rows[1].rad, 0.25 * rate.rows[2].magnitude))
     (h1, k1, q1), (h2, k2, q2) = bent
-    steep = np.abs(_slope(gauge, cells)).max(axis=(1, 2)) + apart[0] + apart[1]
-    places = across.rows[0], along.rows[0], v.rows[0]
-    beside, under = _gaps(gauge, cells, places, (low + middle, high + middle), steep)
+    steep = np.abs(cells.rate).max(axis=(1, 2)) + apart[0] + apart[1]
+    places = _Places(*(part.rows[0] for part in (q, across, along, v, size)))
+    beside, under, path = _gaps(gauge, cells, places, (low + middle, high + middle), (steep, shift))
+    upright = 1.0 / math.hypot(1.0, growth)
     return _Bounds(
         0.125 * (h1 + h2),
-        0.125 * (k1 + k2),
+        0.125 * upright * (k1 + k2),
         beside,
-        under,
+        upright * under,
         along.rows[0].bounds(),
-        np.stack([h1 + k1 + radius * q1, h2 + k2 + radius * q2]),
+        np.stack([h1 + k1 + gauge.radius * q1, h2 + k2 + gauge.radius * q2]),
+        path,
     )
+
+
+def _sharpen(by_s: BallJet, by_t: BallJet, corners: Array) -> None:
+    """Take from what is bilinear between corners (n, 2, 2) a closer enclosure of jets by s and by t."""
+    off = 0.25 * (by_s.rows[2].magnitude + by_t.rows[2].magnitude)
+    for jet in (by_s, by_t):
+        low, high = jet.rows[0].bounds()
+        low = np.maximum(low, corners.min(axis=(1, 2)) - off)
+        value = Ball.between(low, np.maximum(np.minimum(high, corners.max(axis=(1, 2)) + off), low))
+        jet.mid[0], jet.rad[0] = value.mid, value.rad
 
 
 def _jumping(gauge: Gauge, low: Array, high: Array) -> Mask:
@@ -337,16 +410,6 @@ def _jumping(gauge: Gauge, low: Array, high: Array) -> Mask:
     for angle in at[np.abs(jumps[2]) > JUMP * max(1.0, float(np.abs(jumps[2]).max()))].tolist():
         found |= np.remainder(angle - low + LOOSE, TURN) <= high - low + 2.0 * LOOSE
     return found
-
-
-def _slope(gauge: Gauge, cells: _Cells) -> Array:
-    """F_theta (n, 2, 2) at the corners of cells, mm per rad."""
-    x, y, _ = np.moveaxis(cells.nets[:, [0, -1]][:, :, [0, -1]], 3, 0)
-    c, s = np.cos(cells.theta), np.sin(cells.theta)
-    across, along = y * c - x * s, x * c + y * s
-    own = gauge.lifts.at(cells.theta.ravel())[1].reshape(c.shape)
-    slope: Array = across * along / np.sqrt(gauge.radius**2 - across**2) + gauge.side * own
-    return slope
 
 
 def _jet(values: Array, axis: int) -> BallJet:
@@ -373,70 +436,111 @@ def _slopes(gauge: Gauge, angle: BallJet, middle: Array) -> BallJet:
 
 
 def _gaps(
-    gauge: Gauge, cells: _Cells, places: tuple[Ball, Ball, Ball], angles: tuple[Array, Array], steep: Array
-) -> tuple[Array, Array]:
-    """How far F rises above H (n,), and the depth above -K (n,), mm; infinite where F is not known to fall.
+    gauge: Gauge, cells: _Cells, places: _Places, angles: tuple[Array, Array], steepness: tuple[Array, float]
+) -> tuple[Array, Array, tuple[Array, Array]]:
+    """How far F rises above H (n,), and the depth above -K (n,), mm, infinite where F is not known to fall; and m.
 
-    `places` are y, X and v; `steep` bounds |F_theta|, mm per rad.
+    `places` are those over cells whose worst angles lie between `angles`; `steepness` are a bound of |F_theta|, mm per
+    rad, and how far rollers are shifted, mm.
     """
+    steep, shift = steepness
+    growth, smallest = gauge.course.growth, np.maximum(places.size.bounds()[0], 0.0)
+    seen = np.abs(cells.height).max(axis=(1, 2))
     top = np.maximum(cells.height.max(axis=(1, 2)), 0.0)
     with np.errstate(divide="ignore", invalid="ignore"):
-        fall, _, _ = _falls(gauge, places, angles, np.full_like(top, WINDOW))
-        beside = np.where((fall > 0.0) & (steep <= fall * WINDOW), steep**2 / (2.0 * fall), np.inf)
+        found = _falls(gauge, places, angles, np.full_like(top, WINDOW), shift)
+        fall, (least, most) = found.fall, found.path
+        peaked = (fall > 0.0) & (steep + shift * found.turns <= fall * WINDOW)
+        beside = np.where(peaked, steep**2 / (2.0 * fall), np.inf)
         # where F is above 0 the roller may stand nearer: within a window at whose ends F is below 0
         top = np.where(np.isfinite(beside), top + beside, 0.0)
         window = np.where(fall > 0.0, 2.0 * WINDOW + ROOM * np.sqrt(2.0 * top / np.maximum(fall, 1e-6)), WINDOW)
         window = np.minimum(window, MOST_WINDOW)
-        fall, nearing, slope = _falls(gauge, places, angles, window)
+        found = _falls(gauge, places, angles, window, 0.0)
+        fall, nearing = found.fall, found.nearing
         within = np.isfinite(beside) & (fall > 0.0) & (top < 0.5 * fall * (window - WINDOW) ** 2) & (nearing > 0.0)
-        rate = gauge.radius * steep + top * slope
-        # hypot^2/2 is less by no more than rate^2/(2 nearing), and hypot is above 9/10 of the radius
-        under = np.where(within & (top < 0.05 * gauge.radius), rate**2 / (1.8 * nearing * gauge.radius), np.inf)
-    return beside, under
+        rate = places.size.magnitude * steep + seen * found.slope
+        # P is less by no more than rate^2/(2 nearing), and with it R^2/2 by what R grows; both are above 9/10 of R
+        gap = rate**2 / (2.0 * nearing) + top * growth * places.y.magnitude * window
+        under = np.where(within & (top < 0.05 * smallest), gap / (0.9 * smallest), np.inf)
+        known = np.isfinite(beside) & (least > 0.0) & (seen < shift * least)
+    return beside, under, (np.where(known, least, 0.0), np.where(known, most, np.inf))
 
 
-def _falls(
-    gauge: Gauge, places: tuple[Ball, Ball, Ball], angles: tuple[Array, Array], window: Array
-) -> tuple[Array, Array, Array]:
-    """Lower bounds (n,) of -F'' and of (hypot(y, v)^2/2)'' over angles wider by a window (n,), rad, and of |S'| upper.
+class _Falls(NamedTuple):
+    """Lower bounds (n,) of -F'' and of P''; upper ones of |z0'| and of the slope of m; lower and upper of m."""
 
-    `places` are y, X and v over cells whose worst angles lie between `angles`.
+    fall: Array
+    nearing: Array
+    slope: Array
+    turns: Array
+    path: tuple[Array, Array]
+
+
+def _falls(gauge: Gauge, places: _Places, angles: tuple[Array, Array], window: Array, shift: float) -> _Falls:
+    """Bounds over angles wider by a window (n,), rad, and for rollers that are shifted by up to `shift`, mm.
+
+    `places` are those over cells whose worst angles lie between `angles`.
     """
-    side, radius = float(gauge.side), gauge.radius
-    y, along, v = places
+    side, (guide, _, growth) = float(gauge.side), gauge.course
     mid, rad = gauge.lifts.round.enclosure(angles[0] - window, angles[1] + window, 2)
-    slope, bend = Ball(mid[1], rad[1]), Ball(mid[2], rad[2])
-    farther = np.hypot(y.magnitude, along.magnitude) * window
-    across = Ball(y.mid, y.rad + farther)
-    along = Ball(along.mid, along.rad + across.magnitude * window)
-    square = across * across
-    depth = (radius**2 - square) ** 0.5
-    fall = (along * along * radius**2 - square * depth * depth) * depth**-3 - bend * side
-    v = Ball(v.mid, v.rad + slope.magnitude * window)
-    nearing = along * along - square + slope * slope + v * bend * side
-    return fall.bounds()[0], nearing.bounds()[0], slope.magnitude
+    lift = Ball(mid[0], rad[0] + shift / guide.lever)
+    led = guide.jets(lift, Ball(mid[1], rad[1]), Ball(mid[2], rad[2]))
+    farther = np.hypot(places.y.magnitude, places.along.magnitude) * window
+    y = Ball(places.y.mid, places.y.rad + farther)
+    along = Ball(places.along.mid, places.along.rad + y.magnitude * window)
+    q = Ball(places.q.mid, places.q.rad + farther + led.y1.magnitude * window + shift)
+    size = Ball(places.size.mid, places.size.rad + growth * y.magnitude * window)
+    v = Ball(places.v.mid, places.v.rad + led.z1.magnitude * window + shift)
+    depth = (size * size - q * q) ** 0.5
+    over, moved = depth**-1, along + led.y1
+    sheer = size * moved + y * q * growth
+    rest = size * along * growth - q * (y + led.y2)
+    fall = sheer * sheer * over * over * over + rest * over - led.z2 * side
+    nearing = moved * moved - q * (y + led.y2) + led.z1 * led.z1 + v * led.z2 * side
+    nearing = nearing + size * along * growth - y * y * growth**2
+    _, *ways = guide.enclosed(*lift.bounds())
+    across, up = (Ball.between(*way) for way in ways)
+    path = up + q * over * across * side
+    turn = np.hypot(led.y1.magnitude, led.z1.magnitude) * guide.bend
+    turns = turn * (1.0 + (q * over).magnitude) + across.magnitude * (size * sheer * over * over * over).magnitude
+    return _Falls(fall.bounds()[0], nearing.bounds()[0], led.z1.magnitude, turns, path.bounds())
 
 
-def demand_regular(gauge: Gauge, low: float, high: float) -> None:
+def demand_regular(gauge: Gauge, low: float, high: float, shift: float = 0.0) -> None:
     """Raise UnsettledError unless on every cylinder from `low` to `high`, mm, each polar angle is touched once alone.
 
-    Where F is level it falls to both sides: with y = -side R sin a and X = rho of the contact on a cylinder,
-    rho^2 - R^2 sin^2 a cos^2 a > side R cos^3 a S''.
+    It is of all rollers that are shifted by up to `shift`, mm. Where F is level it falls to both sides: with
+    q = -side R sin a and d = R cos a of the contact at a place X along the roller, its -F'' times d^3/R^2 is above 0. F
+    is there over one stretch of the shaft angle, as q/R falls with it.
     """
-    radius, side = gauge.radius, float(gauge.side)
-    edges = np.linspace(low, high, DEPTHS + 1)
+    side, (guide, base, growth) = float(gauge.side), gauge.course
+    near = math.sqrt(max(low**2 - (gauge.reach + shift) ** 2, 0.0))
+    edges = np.linspace(near, high, DEPTHS + 1)
     turn = np.linspace(0.0, TURN, LOOKS + 1)
     a, b = np.tile(turn[:-1], DEPTHS), np.tile(turn[1:], DEPTHS)
     c, d = np.repeat(edges[:-1], LOOKS), np.repeat(edges[1:], LOOKS)
     for _ in range(PARTINGS + 1):
         mid, rad = gauge.lifts.round.enclosure(a, b, 2)
-        slope, bend, r = Ball(mid[1], rad[1]), Ball(mid[2], rad[2]), Ball.between(c, d)
-        vv, rr = slope * slope, r * r
-        apart = rr - vv
-        square = (apart + (apart * apart + vv * (rr - radius**2) * 4.0) ** 0.5) * 0.5
-        share = square * (square + vv) ** -1  # cos^2 a
-        level = square - share * (1.0 - share) * radius**2 - share**1.5 * bend * (radius * side)
-        open_ = ~(level.bounds()[0] > 0.0)
+        led = guide.jets(Ball(mid[0], rad[0] + shift / guide.lever), Ball(mid[1], rad[1]), Ball(mid[2], rad[2]))
+        x = Ball.between(c, d)
+        size = x * growth + base
+        # A sin a - z0' cos a = side y0 g, of whose two angles one alone has cos a above 0
+        moved = x + led.y1
+        reach = moved + size * growth
+        inverse = (reach * reach + led.z1 * led.z1) ** -0.5
+        lag = led.y * inverse * (side * growth)
+        beside = (1.0 - lag * lag) ** 0.5
+        up, out = led.z1 * inverse, reach * inverse
+        sine, cosine, other = up * beside + out * lag, out * beside - up * lag, out * beside + up * lag
+        y = led.y - size * sine * side
+        square = cosine * cosine
+        sheer = moved - y * sine * (side * growth)
+        rest = size * square * (x * growth + sine * (y + led.y2) * side)
+        level = sheer * sheer + rest - size * square * cosine * led.z2 * side
+        one = near + led.y1.bounds()[0] > growth * (gauge.reach + shift)
+        sound = one & (level.bounds()[0] > 0.0) & (cosine.bounds()[0] > 0.0) & (other.bounds()[0] > 0.0)
+        open_ = ~sound & ~((x * x + y * y).bounds()[1] < low**2)
         if not open_.any():
             return
         a, b, c, d = a[open_], b[open_], c[open_], d[open_]
@@ -455,12 +559,11 @@ class _Held:
     def __init__(self) -> None:
         self.parts: list[tuple[Indices, Array, Array, Array]] = []
 
-    def add(self, cells: _Cells, beside: Array, inside: Mask) -> None:
-        """Take in both edges along s of cells (n,), whose H is off what is linear by `beside` (n,), mm."""
+    def add(self, cells: _Cells, least: Array) -> None:
+        """Take in both edges along s of cells (n,), where they hold the roller at `least` (n, 2), mm."""
         for k in (0, 1):
             line = 2 * np.round(cells.lines[:, k] * 2**40).astype(np.int64) + k
-            least = np.where(inside, cells.height[:, :, k].min(axis=1) - beside, -np.inf)
-            self.parts.append((line, cells.theta[:, 0, k], cells.theta[:, 1, k], least))
+            self.parts.append((line, cells.theta[:, 0, k], cells.theta[:, 1, k], least[:, k]))
 
     def least(self) -> float:
         """Height, mm, at which some line holds the roller at least, over all angles; -inf where none goes round."""
@@ -495,7 +598,7 @@ def _holds(gauge: Gauge, cells: Sequence[_Cells], angles: int) -> Array:
             for j in (0, 1):
                 line.append(own)
                 at.append(each.theta[:, j, k] % TURN)
-                height.append(each.height[:, j, k])
+                height.append(each.gives[:, j, k])
                 along.append(reach[:, j, k])
     lines = np.concatenate(line)
     places, heights, reaches = (np.asarray(np.concatenate(part), dtype=np.float64) for part in (at, height, along))

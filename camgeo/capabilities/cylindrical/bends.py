@@ -273,7 +273,7 @@ def _contact(flank: Flank, y: list[Ball], z: list[Ball], rho: Ball) -> _Contact:
     return _Contact(s, c, radius, m, first, s * m**-1 * -(1.0 + t * t))
 
 
-def _places(flank: Flank, y: list[Ball], z: list[Ball], r: Ball) -> Ball:
+def places_along(flank: Flank, y: list[Ball], z: list[Ball], r: Ball) -> Ball:
     """Balls of the distances along the roller at which cylinders are touched.
 
     Each solution stays inside: it is the root of r^2 - q^2, with q of a place that was inside before.
@@ -294,7 +294,7 @@ def _implicit(flank: Flank, rows: Ball, r: Ball) -> Bends:
     """Bounds of the flank of any roller, from rows of S to the third derivative, in axes that turn with the roller."""
     y, z = flank.guide.place(rows)
     t, side = flank.slope, float(flank.side)
-    rho = _places(flank, y, z, r)
+    rho = places_along(flank, y, z, r)
     contact = _contact(flank, y, z, rho)
     s, c, radius, m, a1, a2 = contact
     inverse, spread = m**-1, 1.0 + t * t

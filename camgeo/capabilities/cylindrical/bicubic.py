@@ -10,12 +10,16 @@ so that nothing of the spline is farther from the flank at the same (theta, r) t
     h1^4/384 |p_1111| + h2^4/384 (|p_2222| + h1/4 |p_12222|)
 
 (the error of cubic Hermite interpolation; P. J. Davis, Interpolation and Approximation, 1963, 3.5). In the frame of
-e_r(theta), with the angles of `camgeo.capabilities.cylindrical.flank`,
+e_r(theta), with the place (y, z) of the roller's axis and the contact of `camgeo.capabilities.cylindrical.flank`,
 
-    p = (r cos f, r sin f, level + S + side R c),    p_theta = phi_theta (-r sin f, r cos f, S'),
-    phi_theta = 1 - side R c S''/(w^2 - R^2 sin^2 a),
+    p = (rho, q, z + side R cos a),    q = y - side R sin a,    rho^2 + q^2 = r^2,
 
-which need S and five derivatives. All are balls over cells. Breaks of any derivative are nodes; where S'' jumps,
+and with the derivatives a_1 by theta and a_2 by rho of the contact's angle, which that of A sin a - z' cos a gives,
+
+    M a_1 = side y' tan d - y'' sin a + z'' cos a,    M a_2 = -sin a/cos^2 d,    M = A cos a + z' sin a,
+
+those of q, and rho_theta = -q q_1/(rho + q q_2) and rho_r = r/(rho + q q_2) on a cylinder, from which rho follows as a
+series. All needs S and five derivatives, as balls over cells. Breaks of any derivative are nodes; where S'' jumps,
 p_theta does, and one spline ends and another begins.
 """
 
@@ -23,13 +27,13 @@ from __future__ import annotations
 
 import math
 from itertools import pairwise
-from typing import TYPE_CHECKING, NamedTuple
+from typing import TYPE_CHECKING, Generic, NamedTuple, TypeVar
 
 import numpy as np
 
+from camgeo.capabilities.cylindrical.bends import places_along
 from camgeo.capabilities.cylindrical.grid import SAME, TURN, breaks_of
 from camgeo.common.rounding import upward
-from camgeo.files.errors import RegionError
 from camgeo.fit.nodes import ToleranceError, check_precision, rounding
 from kin.numeric.elementary import cos, sin, sqrt
 from kin.numeric.interval import Ball
@@ -41,13 +45,13 @@ if TYPE_CHECKING:
 
     from camgeo.capabilities.cylindrical.flank import Flank
     from kin.numeric.arrays import Array
-    from kin.numeric.jet import Series
+
+Number = TypeVar("Number", Jet, BallJet)
 
 HERMITE = 384.0
 LOOKS, BLOCKS = 360, 4  # parts of a turn and of the depth, over each of which derivatives are bounded
 MOST_ROWS, MOST_NODES = 64, 10_000
 WIDEST = 0.5  # rad between nodes
-TRIALS, ALIKE = 90, 1e-9  # angles at which a flank is tried, and the share of the radius within which it is the same
 NEAR = 1e-9  # rad: a wanted angle so near a break is meant to be it
 JUMP = 1e-9  # of S', in mm, and of S'': what is less is rounding
 
@@ -90,19 +94,16 @@ def bicubics(
     """Splines of a regular flank between radii `ends`, mm, over a turn from the first of the angles `ends_at`, rad.
 
     One ends and another begins at each of these, and where S'' jumps. Returned with them is the proved bound, mm.
-    Raises ToleranceError where the tolerance cannot be held or proved, RegionError for a flank of another form.
+    Raises ToleranceError where the tolerance cannot be held or proved.
     """
     low, high = ends
-    if not is_radial(flank, ends):
-        raise RegionError(
-            "surfaces are made for a cylindrical roller on a carriage, whose axis is a radius of the drum"
-        )
-    check_precision(high + abs(flank.level), tolerance)
-    lost = rounding(high + abs(flank.level))
+    size = high + abs(flank.level) + flank.guide.reach
+    check_precision(size, tolerance)
+    lost = rounding(size)
     breaks = breaks_of(flank)
     wanted = np.array([_snapped(angle, breaks) for angle in ends_at])
     start = float(wanted[0])
-    joints = np.append(_behind(start, np.concatenate([wanted, _jumps(flank)])), start + TURN)
+    joints = np.append(_behind(start, np.concatenate([wanted, jumps_of(flank)])), start + TURN)
     knots = np.append(_behind(start, np.concatenate([joints, breaks])), start + TURN)
     look = _distinct(np.concatenate([np.linspace(start, start + TURN, LOOKS + 1), knots]))
     look[[0, -1]] = start, start + TURN
@@ -128,19 +129,6 @@ def bicubics(
     return parts, float(off.max())
 
 
-def is_radial(flank: Flank, ends: tuple[float, float]) -> bool:
-    """Whether a flank is where the closed form has it here: of a cylindrical roller whose axis is a radius."""
-    theta = np.asarray(np.arange(TRIALS) * (TURN / TRIALS), dtype=np.float64)
-    lift, slope = flank.law.derivatives(theta, 1)
-    for r in ends:
-        radius = Jet.variable(np.full(TRIALS, r), 0)
-        across, _, z = (part.c[0] for part in _place(flank, (radius.constant(lift), radius.constant(slope)), radius))
-        contact = flank.on(theta, r)
-        if not bool((np.abs(contact.rho - across) + np.abs(contact.z - z) <= ALIKE * r).all()):
-            return False
-    return True
-
-
 def _distinct(angles: Array) -> Array:
     rising = np.sort(angles)
     return np.asarray(rising[np.append(True, np.diff(rising) > SAME)])
@@ -159,44 +147,95 @@ def _behind(start: float, angles: Array) -> Array:
     return start + _distinct(np.append(0.0, offset[TURN - offset > SAME]))
 
 
-def _jumps(flank: Flank) -> Array:
+def jumps_of(flank: Flank) -> Array:
     """Shaft angles (k,), rad, at which S'' jumps; raises ToleranceError where S' does."""
     if not len(flank.law.breaks):
         return np.zeros(0)
     at, jumps = flank.law.jumps(2)
-    size = max(1.0, float(np.abs(flank.law.derivatives(at, 2)).max()))
+    jumps = jumps * flank.guide.reach
+    size = max(1.0, flank.guide.reach * float(np.abs(flank.law.derivatives(at, 2)).max()))
     if bool((np.abs(jumps[1]) > JUMP * size).any()):
         where = math.degrees(float(at[int(np.argmax(np.abs(jumps[1])))])) % 360.0
         raise ToleranceError(f"the velocity jumps at {where:.6g} degrees, where no smooth flank goes on", math.inf)
     return np.asarray(at[np.abs(jumps[2]) > JUMP * size])
 
 
-def _frame(flank: Flank, v: Series, r: Series) -> tuple[Series, Series, Series, Series]:
-    """R sin a, R cos a, R sin a/r, and w^2 - R^2 sin^2 a of contacts on cylinders r, from v = S'."""
-    vv, rr, radius = v * v, r * r, flank.radius
-    apart = rr - vv
-    square = (rr + vv + sqrt(apart * apart + vv * (rr - radius**2) * 4.0)) * 0.5
-    sine = v / sqrt(square)
-    height = sqrt(1.0 - sine * sine) * radius
-    across = sine * radius
-    return across, height, across / r, square - across * across
+class _Axis(NamedTuple, Generic[Number]):
+    """Places y and z of the roller's axis with two derivatives by theta, as series."""
+
+    y: Number
+    y1: Number
+    y2: Number
+    z: Number
+    z1: Number
+    z2: Number
 
 
-def _place(flank: Flank, rows: tuple[Series, Series], r: Series) -> list[Series]:
-    """Place in the frame of e_r(theta), from S and S'."""
-    lift, v = rows
-    _, height, h, _ = _frame(flank, v, r)
-    side = float(flank.side)
-    return [r * sqrt(1.0 - h * h), r * h * -side, lift + height * side + flank.level]
+class _Touch(NamedTuple, Generic[Number]):
+    """Contact at rho, as series: q, the height h, side R, sin a, cos a and 1/M."""
+
+    q: Number
+    h: Number
+    reach: Number
+    sine: Number
+    cosine: Number
+    over: Number
 
 
-def _rate(flank: Flank, rows: tuple[Series, Series], r: Series) -> list[Series]:
-    """Derivative by theta in the frame of e_r(theta), from S' and S''."""
-    v, bend = rows
-    _, height, h, rest = _frame(flank, v, r)
-    side = float(flank.side)
-    turn = 1.0 - height * bend / rest * side
-    return [turn * r * h * side, turn * r * sqrt(1.0 - h * h), turn * v]
+class _Rates(NamedTuple, Generic[Number]):
+    """Derivatives of q and h by theta (1) and by rho (2), as series; rho + q q_2, and that of rho on a cylinder."""
+
+    q1: Number
+    h1: Number
+    q2: Number
+    h2: Number
+    out: Number
+    rho: Number
+
+
+def _to(series: Number, order: int) -> Number:
+    while series.order > order:
+        series = series.lower()
+    return series
+
+
+def _axis_to(axis: _Axis[Number], order: int) -> _Axis[Number]:
+    return _Axis(*(_to(part, order) for part in axis))
+
+
+def _touch(flank: Flank, axis: _Axis[Number], rho: Number) -> _Touch[Number]:
+    t = flank.slope
+    radius = (rho - flank.at) * t + flank.radius
+    along = rho + radius * t + axis.y1
+    inverse = (along * along + axis.z1 * axis.z1) ** -0.5
+    v, u, lag = along * inverse, axis.z1 * inverse, axis.y * inverse * (flank.side * t)
+    beside = sqrt(1.0 - lag * lag)
+    sine, cosine = u * beside + v * lag, v * beside - u * lag
+    reach = radius * float(flank.side)
+    return _Touch(axis.y - reach * sine, axis.z + reach * cosine, reach, sine, cosine, inverse / beside)
+
+
+def _rates(flank: Flank, axis: _Axis[Number], rho: Number) -> _Rates[Number]:
+    q, _, reach, sine, cosine, over = _touch(flank, axis, rho)
+    side, t = float(flank.side), flank.slope
+    turn1 = (axis.y1 * (side * t) - axis.y2 * sine + axis.z2 * cosine) * over
+    turn2 = sine * over * -(1.0 + t * t)
+    q1, h1 = axis.y1 - reach * cosine * turn1, axis.z1 - reach * sine * turn1
+    q2, h2 = sine * (-side * t) - reach * cosine * turn2, cosine * (side * t) - reach * sine * turn2
+    out = rho + q * q2
+    return _Rates(q1, h1, q2, h2, out, q * q1 / out * -1.0)
+
+
+def _place(flank: Flank, axis: _Axis[Number], rho: Number) -> list[Number]:
+    """Place in the frame of e_r(theta)."""
+    touch = _touch(flank, axis, rho)
+    return [rho, touch.q, touch.h]
+
+
+def _rate(flank: Flank, axis: _Axis[Number], rho: Number) -> list[Number]:
+    """Derivative by theta on a cylinder in the frame of e_r(theta)."""
+    q, rates = _touch(flank, axis, rho).q, _rates(flank, axis, rho)
+    return [rates.rho - q, rho + rates.q1 + rates.q2 * rates.rho, rates.h1 + rates.h2 * rates.rho]
 
 
 def _bounds(flank: Flank, look: Array, ends: tuple[float, float]) -> _Bounds:
@@ -204,19 +243,27 @@ def _bounds(flank: Flank, look: Array, ends: tuple[float, float]) -> _Bounds:
     n, edges = len(look) - 1, np.linspace(*ends, BLOCKS + 1)
     low, high = np.tile(look[:-1], BLOCKS), np.tile(look[1:], BLOCKS)
     inner, outer = np.repeat(edges[:-1], n), np.repeat(edges[1:], n)
-    lift = flank.law.on(BallJet.variable(low, high, 5))
-    slope = lift.derivative()
-    rows = slope.derivative()
+    y, z = flank.guide.path(flank.law.on(BallJet.variable(low, high, 5)))
+    y1, z1 = y.derivative(), z.derivative()
+    axis = _Axis(y, y1, y1.derivative(), z, z1, z1.derivative())
+    rows = [part.rows[0] for part in axis]
+    start = places_along(flank, rows[:3], rows[3:], Ball.between(inner, outer))
+    here = BallJet(start.mid[None], start.rad[None])
 
     # by theta: the frame itself turns
+    rho = here
+    for order in range(4):
+        rho = _rates(flank, _axis_to(axis, order), rho).rho.integral(start)
     tau = BallJet.variable(low, high, 4) - 0.5 * (low + high)
-    x, y, z = _place(flank, (lift.lower(), slope), tau.constant(Ball.between(inner, outer)))
+    x, q, h = _place(flank, _axis_to(axis, 4), rho)
     c, s = cos(tau), sin(tau)
-    along = _size([x * c - y * s, x * s + y * c, z])
+    along = _size([x * c - q * s, x * s + q * c, h])
 
-    r = BallJet.variable(inner, outer, 4)
-    first, second, third = (r.constant(part.rows[0]) for part in (lift, slope, rows))
-    found = [along, _size(_place(flank, (first, second), r)), _size(_rate(flank, (second, third), r))]
+    rho, r = here, BallJet.variable(inner, outer, 4)
+    still = _Axis(*(r.constant(row) for row in rows))
+    for order in range(4):
+        rho = (_to(r, order) / _rates(flank, _axis_to(still, order), rho).out).integral(start)
+    found = [along, _size(_place(flank, still, rho)), _size(_rate(flank, still, rho))]
     folded = [part.reshape(BLOCKS, n).max(axis=0) for part in found]
     for part in folded:
         if not bool(np.isfinite(part).all()):
@@ -269,11 +316,13 @@ def _spline(flank: Flank, theta: Array, r: Array) -> Bicubic:
     """Spline through nodes theta (n + 1,), rad, between which S'' is continuous, and r (m + 1,), mm."""
     rows = flank.law.derivatives(theta, 2, 1)
     rows[:, -1] = flank.law.derivatives(theta[-1:], 2, -1)[:, 0]
-    lift, slope, bend = (np.repeat(row, len(r)) for row in rows)
-    radius = Jet.variable(np.tile(r, len(theta)), 1)
-    first, second, third = (radius.constant(row) for row in (lift, slope, bend))
-    turn = np.repeat(theta, len(r))
-    both = _place(flank, (first, second), radius), _rate(flank, (second, third), radius)
+    pose = flank.led(np.repeat(rows, len(r), axis=1))
+    turn, radius = np.repeat(theta, len(r)), np.tile(r, len(theta))
+    start = flank.reached(pose, radius)
+    still = _Axis(*(Jet(np.stack([row, 0.0 * row])) for row in pose[:6]))
+    out = _rates(flank, _axis_to(still, 0), Jet(start[None])).out
+    rho = Jet(np.stack([start, radius / out.c[0]]))
+    both = _place(flank, still, rho), _rate(flank, still, rho)
     (p, by_r), (by_theta, by_both) = ([_turned(parts, turn, k) for k in (0, 1)] for parts in both)
     shape = len(theta), len(r), 3
     nodes = [part.reshape(shape) for part in (p, by_r, by_theta, by_both)]

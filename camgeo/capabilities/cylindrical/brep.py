@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
-from camgeo.capabilities.cylindrical.bicubic import bicubics
+from camgeo.capabilities.cylindrical.bicubic import NEAR, bicubics, jumps_of
 from camgeo.capabilities.cylindrical.figures import at_angle
 from camgeo.capabilities.cylindrical.grid import TURN
 from camgeo.capabilities.cylindrical.keys import End, Groove
@@ -28,6 +28,7 @@ if TYPE_CHECKING:
     from kin.numeric.arrays import Array
 
 HALVES = 2  # faces of a cylinder
+STARTS, APART = 12, 0.02  # cuts that are tried, and rad from a jump beside which one leaves a face too narrow
 
 
 class Solid(NamedTuple):
@@ -191,10 +192,25 @@ def _parted(design: DrumDesign, radius: float) -> dict[str, list[float]]:
     """Two shaft angles of each flank, rad, which it has at the same polar angles on a cylinder, mm, as the others."""
     names = list(design.flanks)
     first = design.flanks[names[0]]
-    start = float(first.law.breaks[0]) if len(first.law.breaks) else 0.0
-    phi = float(first.on(np.array([start]), radius).phi[0]) + np.array([0.0, 0.5 * TURN])
-    found = {name: at_angle(design.flanks[name], phi, radius, phi).tolist() for name in names}
-    return {**found, names[0]: [start, found[names[0]][1]]}
+    jumps = {name: jumps_of(flank) for name, flank in design.flanks.items()}
+    begin = float(first.law.breaks[0]) if len(first.law.breaks) else 0.0
+    best: tuple[float, dict[str, list[float]]] = -1.0, {}
+    for start in begin + np.arange(STARTS) * (0.5 * TURN / STARTS):
+        phi = float(first.on(np.array([start]), radius).phi[0]) + np.array([0.0, 0.5 * TURN])
+        found = {name: at_angle(design.flanks[name], phi, radius, phi).tolist() for name in names}
+        found[names[0]][0] = float(start)
+        narrowest = min(_apart(found[name], jumps[name]) for name in names)
+        if narrowest > best[0]:
+            best = narrowest, found
+        if narrowest > APART:
+            break
+    return best[1]
+
+
+def _apart(cuts: Sequence[float], jumps: Array) -> float:
+    """Least angle, rad, between cuts and jumps that are not one."""
+    off = np.abs(np.remainder(np.subtract.outer(np.array(cuts), jumps) + 0.5 * TURN, TURN) - 0.5 * TURN)
+    return float(off[off > NEAR].min(initial=TURN))
 
 
 # --- the kernel's curves ----------------------------------------------------------------------------------------------

@@ -16,6 +16,7 @@ from typing import TYPE_CHECKING, Any, TypeAlias, TypeVar
 
 import numpy as np
 
+from kin.numeric.elementary import cos, sin
 from kin.numeric.interval import Ball, sin_cos
 from kin.numeric.records import dataclass, replace
 
@@ -23,6 +24,7 @@ if TYPE_CHECKING:
     from typing import ClassVar, Literal
 
     from kin.numeric.arrays import Array
+    from kin.numeric.jet import Series
 
 Rows = TypeVar("Rows", "Array", Ball)
 
@@ -53,6 +55,10 @@ class Carriage:
         """Y and z, mm, and derivatives by the shaft angle, from as many rows of S, mm."""
         lift, *rates = _each(rows)
         return [lift * 0.0 + self.offset, *(rate * 0.0 for rate in rates)], [lift + self.level, *rates]
+
+    def path(self, lift: Series) -> tuple[Series, Series]:
+        """Y and z, mm, of a lift as a series."""
+        return lift * 0.0 + self.offset, lift + self.level
 
     def lean(self, lift: Array) -> Array:
         """Angle of the roller's way against the cam's axis, towards -e_t, rad (n,)."""
@@ -116,6 +122,11 @@ class Arm:
                 third = first * rates[0] * rates[0] * rates[0] * -1.0
                 values.append(third + second * rates[0] * rates[1] * 3.0 + first * rates[2])
         return y, z
+
+    def path(self, lift: Series) -> tuple[Series, Series]:
+        """Y and z, mm, of a lift as a series, rad."""
+        psi = lift + self.start
+        return cos(psi) * (-self.side * self.length) + self.y, sin(psi) * self.length + self.z
 
     def lean(self, lift: Array) -> Array:
         """Angle of the roller's way against the cam's axis, towards -e_t, rad (n,)."""

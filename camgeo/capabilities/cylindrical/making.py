@@ -32,7 +32,6 @@ def foresee(design: DrumDesign, request: FileRequest) -> None:
     if request.kind == "dxf":
         demand_package("ezdxf", "a DXF file needs ezdxf")
     if request.kind == "step":
-        from camgeo.capabilities.cylindrical.bicubic import is_radial
         from camgeo.files.brep import need_kernel
 
         recipe, problem = design.recipe, ""
@@ -40,8 +39,6 @@ def foresee(design: DrumDesign, request: FileRequest) -> None:
             problem = "STEP of a groove of several turns, which crosses itself, is not made yet"
         elif any(design.tips.values()):
             problem = "a flank that an undercut shortens ends in a sharp edge, and no STEP is made of it"
-        elif not all(is_radial(flank, (recipe.floor, recipe.radius)) for flank in design.flanks.values()):
-            problem = "STEP is made for a cylindrical roller on a carriage alone, whose axis is a radius of the drum"
         if problem:
             raise recipe.error(recipe.field_of(request), problem, None, "give stl, 3mf or ply")
         need_kernel()

@@ -8,26 +8,39 @@ from __future__ import annotations
 import math
 import re
 import sys
+from functools import cache
+from pathlib import Path
+from random import Random
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 import pytest
 from capabilities.cylindrical.made_drums import (
+    ARM,
+    BESIDE,
     BOTTOM,
+    CONE,
+    CONE_ON_ARM,
     GROOVE,
+    LEADING,
+    LED,
     RIB,
+    RIB_ON_ARM,
     TOP,
     UNDERCUT,
     changed,
     cut_short,
     design_of,
+    random_drum,
     recipe_of,
 )
-from capabilities.cylindrical.positions import Lift, envelope
+from capabilities.cylindrical.positions import Lift, envelope, off_flank
 from capabilities.cylindrical.test_files import demand_foreseen, exported
+from capabilities.cylindrical.test_random_drums import rollers
 from support.kernel import kernel
 
 import camgeo
+from camgeo.capabilities.cylindrical import brep
 from camgeo.capabilities.cylindrical.bicubic import bicubics
 from camgeo.capabilities.cylindrical.brep import drum_solid
 from camgeo.capabilities.cylindrical.exact import designed
@@ -35,7 +48,7 @@ from camgeo.capabilities.cylindrical.figures import volume
 from camgeo.capabilities.cylindrical.making import foresee
 from camgeo.capabilities.cylindrical.verdicts import intended, judged_file
 from camgeo.common.clock import Clock
-from camgeo.files.errors import MissingExtraError, RegionError
+from camgeo.files.errors import MissingExtraError
 from camgeo.fit.nodes import ToleranceError
 from camgeo.formats.step import write_shape
 from camgeo.schema.errors import RecipeErrors
@@ -45,7 +58,6 @@ from kin.numeric.records import replace
 
 if TYPE_CHECKING:
     from collections.abc import Callable
-    from pathlib import Path
 
     from camgeo.capabilities.cylindrical.bicubic import Bicubic
     from camgeo.capabilities.cylindrical.design import DrumDesign
@@ -139,14 +151,20 @@ def test_a_tolerance_that_is_too_small_names_one_that_serves() -> None:
         bicubics(flank, ends, 1e-15, (0.0, 3.0))
 
 
-@pytest.mark.parametrize("more", ["offset: 4", "taper: 8", "taper: axis"])
-def test_a_flank_of_another_form_is_refused(more: str) -> None:
-    design = design_of(changed(STEP, ("radius: 10,", f"radius: 10, {more},")))
-    with pytest.raises(RegionError, match="cylindrical roller on a carriage"):
-        bicubics(design.flanks["lower"], (37.5, 50.0), 0.1, (0.0, 3.0))
-    with pytest.raises(RecipeErrors, match=r"export.files\[0\]: STEP is made for a cylindrical roller") as caught:
-        foresee(design, design.recipe.export.files[0])
-    assert "give stl, 3mf or ply" in str(caught.value)
+@pytest.mark.costly("the lowest of all rollers at places of flanks of each follower")
+@pytest.mark.thin(2)
+@pytest.mark.parametrize("led", LED[1:])
+def test_splines_of_other_followers_are_as_near_all_rollers_as_is_proved(led: str) -> None:
+    seed = 60 + LED.index(led)
+    text, lift = random_drum(Random(seed), ("groove", "rib")[seed % 2], inch=False, ccw=False, undercut=False, led=led)
+    design = design_of(text)
+    recipe, share = design.recipe, np.random.default_rng(seed).uniform(0.0, 1.0, 61)
+    for flank, roller in zip((design.flanks[name] for name in ("lower", "upper")), rollers(recipe, lift), strict=True):
+        parts, off = bicubics(flank, (recipe.floor, recipe.radius), 0.02, (0.0, 0.5 * TURN))
+        assert off <= 0.02
+        places = np.concatenate([on_spline(part, share).reshape(-1, 3) for part in parts])
+        worst = float(np.abs(off_flank(*roller, recipe.level, places)).max())
+        assert 0.01 * off < worst < off
 
 
 # --- the recipe -------------------------------------------------------------------------------------------------------
@@ -216,6 +234,17 @@ def refused(verdict: DrumVerdict) -> set[tuple[str, str]]:
     return {(check.name, check.surface) for check in verdict.checks if not check.ok}
 
 
+# a cut at the first break of the motion lies just beside a jump of the acceleration on the upper flank
+NARROW = """cam:
+  kind: cylindrical
+  radius: 60
+  track: {rib: {distance: 36, depth: 12}}
+  follower: {radius: 9, taper: 5, arm: {length: 90, offset: -88.6, pivot: 50, side: leading}}
+  pitch_height: 34.4
+  motion: [{rise: 20, over: 120, law: modified-sine}, {dwell: 60}, {return: 20, over: 120, law: harmonic}, {dwell: 60}]
+part: {length: 90, bore: 30}
+export: {tolerance: 0.005, files: [step]}
+"""
 TRACKS = {
     "groove": STEP,
     "rib": RIB,
@@ -223,6 +252,13 @@ TRACKS = {
     "bottom": BOTTOM,
     "jump": "rotation: ccw\n" + GROOVE.replace("cycloidal", "harmonic").replace(", keyway: din6885", ""),
     "no bore": TOP.replace(", bore: 24, keyway: din6885", ""),
+    "arm": ARM,
+    "leading": "rotation: ccw\n" + LEADING.replace("cycloidal", "harmonic"),
+    "cone on an arm": CONE_ON_ARM,
+    "rib on an arm": RIB_ON_ARM,
+    "cone": "rotation: ccw\n" + CONE,
+    "beside": BESIDE,
+    "narrow": NARROW,
 }
 
 
@@ -242,6 +278,38 @@ def test_another_kernel_takes_the_solid_and_kin_both_files(tmp_path: Path, track
         assert verdict.ok, [check for check in verdict.checks if not check.ok]
         assert all(flank.measured_error <= off for flank in verdict.flanks)
         assert all(flank.motion.remainder < 0.2 * tolerance for flank in verdict.flanks)
+
+
+@kernel
+@pytest.mark.costly("a solid and its verdict")
+def test_a_part_that_is_narrower_than_deep_is_judged(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(brep, "APART", 0.0)
+    path, design, _ = written(tmp_path, NARROW, 0.001)
+    verdict = judged(path, design, 0.001)
+    assert verdict.ok, [check for check in verdict.checks if not check.ok]
+
+
+@kernel
+@pytest.mark.slow  # solids by the kernel, and whole verdicts
+@pytest.mark.parametrize("seed", range(24))
+def test_random_drums_of_other_followers(tmp_path: Path, seed: int) -> None:
+    chance, led = Random(seed), LED[1 + seed % 6]
+    track = ("groove", "rib", "top", "bottom")[(seed // 6 + seed) % 4]
+    tolerance = (0.1, 0.02, 0.005)[seed % 3]
+    while True:  # drawn again where the drum is undercut
+        text, _ = random_drum(chance, track, inch=seed % 3 == 0, ccw=seed % 2 == 1, undercut=False, led=led)
+        try:
+            path, design, off = written(tmp_path, text, tolerance)
+            break
+        except RecipeErrors as error:
+            if "undercut" not in str(error):
+                raise
+    sound, measured = solids_of(path)
+    assert sound
+    assert measured == pytest.approx(volume(design), abs=0.1 * tolerance * 50_000)
+    verdict = judged(path, design, tolerance)
+    assert verdict.ok, [check for check in verdict.checks if not check.ok]
+    assert max(flank.measured_error for flank in verdict.flanks) <= off
 
 
 @kernel
@@ -365,6 +433,82 @@ def test_drums_of_another_size_are_refused(sound: tuple[str, DrumDesign, Path]) 
         assert found - names <= {("volume", "")}
     mirrored = refused(judged(path, design_of("rotation: ccw\n" + TOP), FINE))
     assert {("contour", "lower"), ("motion", "lower")} <= mirrored
+
+
+ENDS = {
+    name: changed(text, ("groove: {depth: 12.5}", "end: top"), ("length: 80, bore", "length: 90, bore"))
+    for name, text in {
+        "trailing": ARM,
+        "leading": LEADING,
+        "cone": CONE.replace("taper: axis", "taper: 9"),
+        "apex": CONE,
+        "cone on an arm": CONE_ON_ARM,
+        "beside": BESIDE,
+    }.items()
+}
+CHANGES = {
+    "trailing": [("length: 80,", "length: 80.05,"), ("offset: 78", "offset: 78.05"), ("arm: {", "taper: 0.2, arm: {")],
+    "leading": [("length: 80,", "length: 80.05,"), ("pivot: 40,", "pivot: 41,")],
+    "cone": [("taper: 9", "taper: 9.1"), ("at: 44", "at: 44.2")],
+    "apex": [("taper: axis", "taper: 12.6"), ("taper: axis, at: 44, ", "")],
+    "cone on an arm": [("length: 80,", "length: 80.05,"), ("taper: 6", "taper: 6.1")],
+    "beside": [("offset: 6", "offset: -6"), ("offset: 6", "offset: 6.05"), ("offset: 6, ", "")],
+}
+
+
+@cache
+def made_end(led: str) -> str:
+    """Text of a sound file of an end cam of a follower."""
+    from tempfile import TemporaryDirectory
+
+    pytest.importorskip("OCP")
+    with TemporaryDirectory() as folder:
+        path, *_ = written(Path(folder), ENDS[led], FINE)
+        return path.read_text(encoding="latin-1")
+
+
+def scaled(text: str) -> str:
+    """The text with all lengths larger by 1.001."""
+
+    def larger(found: re.Match[str]) -> str:
+        return found[1] + ",".join(repr(1.001 * float(part)) for part in found[2].split(",")) + found[3]
+
+    text = re.sub(r"(CARTESIAN_POINT\('',\()([^)]*)(\))", larger, text)
+    return re.sub(r"((?:CYLINDRICAL_SURFACE|CIRCLE)\('',#\d+,)([^)]*)(\))", larger, text)
+
+
+@pytest.mark.costly("a solid of each follower, and its verdicts")
+@pytest.mark.thin(3)
+@pytest.mark.parametrize("led", ENDS)
+def test_drums_for_another_follower_are_refused(tmp_path: Path, led: str) -> None:
+    path = tmp_path / "drum.step"
+    path.write_text(made_end(led), encoding="latin-1")
+    assert judged(path, design_of(ENDS[led]), FINE).ok
+    changes = [*CHANGES[led], ("radius: 10,", "radius: 10.01,")]
+    for other in (changed(ENDS[led], change) for change in changes):
+        assert {("contour", "lower"), ("motion", "lower")} <= refused(judged(path, design_of(other), FINE)), other
+    mirrored = refused(judged(path, design_of("rotation: ccw\n" + ENDS[led]), FINE))
+    assert "contour" in {name for name, _ in mirrored}  # far off not only on the one flank
+    for change, name in (
+        (("bore: 24", "bore: 24.01"), "bore"),
+        (("length: 90, bore", "length: 90.01, bore"), "ends"),
+        (("radius: 50", "radius: 50.01"), "blank"),
+        (("from: 38", "from: 38.01"), "floor"),
+    ):
+        assert (name, "") in refused(judged(path, design_of(changed(ENDS[led], change)), FINE))
+
+
+@pytest.mark.costly("a solid of each follower, and its verdicts")
+@pytest.mark.thin(3)
+@pytest.mark.parametrize("led", ENDS)
+def test_planted_faults_of_other_followers_are_refused(tmp_path: Path, led: str) -> None:
+    path, design = tmp_path / "spoilt.step", design_of(ENDS[led])
+    spoilt = [(spoil, name) for spoil, name in FAULTS.values()]
+    for spoil, name in [*spoilt, (scaled, "contour"), (scaled, "blank")]:
+        text = spoil(made_end(led))
+        assert text != made_end(led)
+        path.write_text(text, encoding="latin-1")
+        assert name in {each for each, _ in refused(judged(path, design, FINE))}
 
 
 def test_what_is_not_judged_says_so(sound: tuple[str, DrumDesign, Path]) -> None:
