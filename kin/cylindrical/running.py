@@ -56,8 +56,8 @@ SPREAD = 3  # steps to both sides, over which a slope is taken
 class Asked(NamedTuple):
     """What is known of the roller: lengths mm.
 
-    `inner` and `outer` are where it bears along its axis, None for the floor and GAP, and for the blank. `height` is
-    that of the track at angle 0, where there are several; `distance` that of a rib's two rollers.
+    `inner` and `outer` are where it bears along its axis, None for the floor and GAP, and for the blank. A cone has its
+    radius half way between, and by `taper`, rad, or "axis" its apex on the drum's axis. `height` is that of the track at angle 0, where there are several; `distance` that of a rib's two rollers.
     """
 
     radius: float
@@ -65,8 +65,7 @@ class Asked(NamedTuple):
     inner: float | None = None
     outer: float | None = None
     offset: float = 0.0
-    taper: float = 0.0
-    at: float | None = None
+    taper: float | Literal["axis"] = 0.0
     arm: Arm | None = None
     height: float | None = None
     distance: float | None = None
@@ -133,6 +132,8 @@ def run(drum: Drum, asked: Asked) -> Run:
         if asked.arm is not None:
             raise UnknownError("two rollers on one arm have a distance of their own", "give distance")
         distance = 0.0
+    middle = 0.5 * (inner + outer)
+    taper = math.atan2(asked.radius, middle) if asked.taper == "axis" else asked.taper
     follower = DrumFollower(
         asked.radius,
         inner,
@@ -140,8 +141,8 @@ def run(drum: Drum, asked: Asked) -> Run:
         0.0 if asked.arm is None else asked.arm.pivot,
         Piecewise(np.array([0.0, TURN]), (Constant(0.0),)),
         asked.offset,
-        asked.taper,
-        0.5 * (inner + outer) if asked.taper and asked.at is None else asked.at,
+        taper,
+        middle if taper else None,
         asked.arm,
     )
     depth = drum.radius - floor
@@ -383,7 +384,7 @@ def _metal(drum: Drum, gauge: Gauge, guide: Guide, guess: Array) -> Indices:
         place = drum.facets[within[across][0]].mean(axis=0)
         angle = degrees(math.atan2(place[1], place[0]) % TURN)
         raise UnknownError(
-            f"metal stands in the roller's way at about {angle:.6g} degrees, {np.hypot(*place[:2]):.6g} mm from the axis",
+            f"metal stands in the roller's way at about {angle:.6g} degrees, {np.hypot(*place[:2]):.6g} mm out",
             "give from and to within the flanks, or a smaller roller",
         )
     return within[~away.any(axis=1)]

@@ -75,6 +75,7 @@ class Drum:
     facets   corners (t, 3, 3) of triangles, counter-clockwise from outside; of exact surfaces those of flanks alone
     radius   of the blank
     length   greatest height
+    below    height of the lower face in the file
     sag      how far facets stand off the surface between them, by the bends at their edges: an estimate
     rounding by which a coordinate may be off by the file's numbers
     levels   heights of level faces that are no facets, with the radii between which they lie and their sense, (k, 4)
@@ -87,6 +88,7 @@ class Drum:
     facets: Array
     radius: float
     length: float
+    below: float
     sag: float
     rounding: float
     levels: Array
@@ -159,6 +161,18 @@ class Drum:
         np.fmax.at(met, at[hit], np.einsum("nk,nk->n", shares[hit], self.r[own[hit]]))
         return math.nan if np.isnan(met).any() else float(met.max())
 
+    def core(self, radius: float) -> tuple[float, float]:
+        """Heights, mm, between which the metal within a radius, mm, lies: of its outermost level faces.
+
+        Those of the whole drum where there is none.
+        """
+        level = (np.ptp(self.facets[..., 2], axis=1) == 0.0) & (self.r.max(axis=1) <= radius)
+        z, up = self.facets[level, 0, 2], self.normals[level, 2] > 0.0
+        flat = self.levels[self.levels[:, 2] <= radius] if len(self.levels) else self.levels
+        low = [*z[~up].tolist(), *flat[flat[:, 3] < 0.0, 0].tolist()]
+        high = [*z[up].tolist(), *flat[flat[:, 3] > 0.0, 0].tolist()]
+        return min(low, default=0.0), max(high, default=self.length)
+
     def _meetings(self, theta: Array, *kept: Mask) -> tuple[Array, Array]:
         """Numbers of facets and of angles (m,), (m,) that may meet, of the facets that are kept."""
         low, high = self.phi.min(axis=1), self.phi.max(axis=1)
@@ -213,10 +227,11 @@ def read_drum(path: Path, placed: Placed, units: float | None = None) -> Drum:
     facets = points[corners]
     bore, keyed = _bore(points, corners)
     remarks = tuple(f"the file has a fault: {fault}" for fault in read.faults)
-    drum = Drum(
+    return Drum(
         facets,
         radius,
         float(points[:, 2].max()),
+        low,
         _sag(points, corners, radius),
         read.rounding,
         np.empty((0, 4)),
@@ -225,7 +240,6 @@ def read_drum(path: Path, placed: Placed, units: float | None = None) -> Drum:
         keyed,
         remarks,
     )
-    return drum
 
 
 def _turned(points: Array, placed: Placed) -> Array:
@@ -253,9 +267,7 @@ def _blank(points: Array, told: Array, placed: Placed) -> float:
         middle = 0.5 * (flat.min(axis=0) + flat.max(axis=0))
         if _round_about(flat - middle) is not None:
             at = "" if np.abs(middle).max() < SAME else f" and at {middle[0]:.6g},{middle[1]:.6g}"
-            raise UnknownError(
-                f"its outermost corners lie on no cylinder about {placed.axis}", f"give axis {axis}{at}"
-            )
+            raise UnknownError(f"its outermost corners lie on no cylinder about {placed.axis}", f"give axis {axis}{at}")
     raise UnknownError(f"its outermost corners lie on no cylinder about {placed.axis}, x or y: no drum")
 
 
@@ -276,14 +288,20 @@ def _bore(points: Array, corners: Array) -> tuple[float | None, bool]:
         return None, False
     a, b = chosen.T.ravel(), np.roll(chosen, -1, axis=1).T.ravel()
     codes, count = np.unique(paired(np.minimum(a, b), np.maximum(a, b), len(points)), return_counts=True)
-    ends = np.unique(np.concatenate([codes[count == 1] // len(points), codes[count == 1] % len(points)]))
-    r = np.hypot(points[ends, 0], points[ends, 1])
-    inner = r[r < 0.5 * (r.min() + r.max())]
-    if not len(inner) or float(r.max()) - float(r.min()) <= ROUND * float(r.max()):
+    first, last = codes[count == 1] // len(points), codes[count == 1] % len(points)
+    r = np.hypot(points[:, 0], points[:, 1])
+    ends = np.concatenate([first, last])
+    least, most = float(r[ends].min()), float(r[ends].max())
+    if most - least <= ROUND * most:
         return None, False
+    own = (r[first] < 0.5 * (least + most)) & (r[last] < 0.5 * (least + most))
+    first, last, around = first[own], last[own], r[np.concatenate([first[own], last[own]])]
     # a keyway leaves most corners on the circle
-    radius = float(np.median(inner))
-    return radius, bool(np.abs(inner - radius).max() > ROUND * radius)
+    radius = float(np.median(around))
+    if float(np.abs(around - radius).max()) > ROUND * radius:
+        return radius, True
+    area = np.abs(points[first, 0] * points[last, 1] - points[first, 1] * points[last, 0]).sum()
+    return math.sqrt(0.5 * float(area) / math.pi), False
 
 
 def _sag(points: Array, corners: Array, radius: float) -> float:
@@ -304,9 +322,7 @@ def _sag(points: Array, corners: Array, radius: float) -> float:
     order = np.argsort(codes, kind="stable")
     twice = np.flatnonzero(np.diff(codes[order]) == 0)
     one, other = order[twice], order[twice + 1]
-    turned = 2.0 * np.arcsin(
-        np.minimum(0.5 * np.linalg.norm(normal[facet[one]] - normal[facet[other]], axis=1), 1.0)
-    )
+    turned = 2.0 * np.arcsin(np.minimum(0.5 * np.linalg.norm(normal[facet[one]] - normal[facet[other]], axis=1), 1.0))
     length = np.linalg.norm(points[a[one]] - points[b[one]], axis=1)
     width = (area[facet[one]] + area[facet[other]]) / np.maximum(length, 1e-300)
     off = (turned * width / 16.0)[(turned < BENT) & (length > 0.0)]
@@ -352,6 +368,7 @@ def _of_shell(shell: Shell, placed: Placed) -> Drum:
         facets - [0.0, 0.0, least],
         radius,
         length,
+        least,
         FINE,
         0.0,
         np.array([(z - least, low, high, up) for z, low, high, up in levels]).reshape(-1, 4),

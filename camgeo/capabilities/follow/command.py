@@ -148,15 +148,19 @@ def _lifts_beside(arguments: argparse.Namespace) -> str | None:
 
 
 def _print_other(arguments: argparse.Namespace, followed: FollowedOver) -> int:
-    """Print a motion over another input than a turn, write its table and recipe; returns the exit status 0."""
+    """Print a motion of another cam than a disc, write its table, recipe and page; returns the exit status 0."""
     from camgeo.cli.new_file import demand_new, write_new
 
     lifts = _lifts_beside(arguments)
-    demand_new({"--table": arguments.table, "--recipe": arguments.recipe, "the lifts of --recipe": lifts})
+    writers = {"--table": arguments.table, "--recipe": arguments.recipe, "--page": arguments.page}
+    demand_new({**writers, "the lifts of --recipe": lifts})
     texts = {} if arguments.table is None else {arguments.table: followed.table()}
     if arguments.recipe is not None and lifts is not None:
         texts[arguments.recipe] = followed.recipe(Path(lifts).name)
-        texts[lifts] = followed.lifts()
+        if (rows := followed.lifts()) is not None:
+            texts[lifts] = rows
+    if arguments.page is not None:
+        texts[arguments.page] = followed.page()
     write_new(texts)
     if arguments.json:
         from camgeo.report.document import as_json
