@@ -33,6 +33,7 @@ if TYPE_CHECKING:
 
     from kin.cylindrical.follower import Arm
     from kin.cylindrical.guide import Guide
+    from kin.cylindrical.intent import Track
     from kin.cylindrical.roller import Gauge
     from kin.cylindrical.unknown import Column, Drum
     from kin.law.contacts import Side
@@ -56,8 +57,9 @@ SPREAD = 3  # steps to both sides, over which a slope is taken
 class Asked(NamedTuple):
     """What is known of the roller: lengths mm.
 
-    `inner` and `outer` are where it bears along its axis, None for the floor and GAP, and for the blank. A cone has its
-    radius half way between, and by `taper`, rad, or "axis" its apex on the drum's axis. `height` is that of the track at angle 0, where there are several; `distance` that of a rib's two rollers.
+    `inner` and `outer` are where it bears along its axis, None for the floor and GAP, and for the blank. A cone by
+    `taper`, rad, or "axis" for an apex on the drum's axis, has its radius `at` a place, None for half way. `height` is
+    that of the track at angle 0, where there are several; `distance` that of a rib's two rollers.
     """
 
     radius: float
@@ -66,6 +68,7 @@ class Asked(NamedTuple):
     outer: float | None = None
     offset: float = 0.0
     taper: float | Literal["axis"] = 0.0
+    at: float | None = None
     arm: Arm | None = None
     height: float | None = None
     distance: float | None = None
@@ -114,14 +117,20 @@ def run(drum: Drum, asked: Asked) -> Run:
     nothing or metal stands in its way.
     """
     outer = drum.radius if asked.outer is None else asked.outer
+    if not outer <= drum.radius * (1.0 + BENEATH) or (asked.inner is not None and not asked.inner < outer):
+        begins = "" if asked.inner is None else f"from {asked.inner:.6g} "
+        raise UnknownError(
+            f"the blank is at {drum.radius:.6g} mm, and the roller bears {begins}to {outer:.6g} mm",
+            "give from and to between floor and blank",
+        )
     probe = 0.5 * (asked.inner + outer) if asked.inner is not None else min(outer, (1.0 - BENEATH) * drum.radius)
     track = _track(drum, asked, probe)
     floor = _floor(drum, track, asked, probe)
     inner = floor + GAP if asked.inner is None else asked.inner
-    if not floor < inner < outer <= drum.radius * (1.0 + BENEATH):
+    if not floor < inner < outer:
         raise UnknownError(
             f"the floor is at {floor:.6g} mm and the blank at {drum.radius:.6g}, and the roller bears from "
-            f"{inner:.6g} to {outer:.6g}",
+            f"{inner:.6g} to {outer:.6g} mm",
             "give from and to between floor and blank",
         )
     if asked.inner is None:
@@ -132,7 +141,7 @@ def run(drum: Drum, asked: Asked) -> Run:
         if asked.arm is not None:
             raise UnknownError("two rollers on one arm have a distance of their own", "give distance")
         distance = 0.0
-    middle = 0.5 * (inner + outer)
+    middle = 0.5 * (inner + outer) if asked.at is None else asked.at
     taper = math.atan2(asked.radius, middle) if asked.taper == "axis" else asked.taper
     follower = DrumFollower(
         asked.radius,
@@ -146,10 +155,7 @@ def run(drum: Drum, asked: Asked) -> Run:
         asked.arm,
     )
     depth = drum.radius - floor
-    own = {"groove": Groove(depth), "rib": Rib(depth, distance or 0.0)}.get(track.kind) or End(
-        "top" if track.kind == "top" else "bottom", depth
-    )
-    gauges = gauges_of(DrumIntent(follower, own, drum.radius, drum.length))
+    gauges = gauges_of(DrumIntent(follower, _flanks(track.kind, depth, distance or 0.0), drum.radius, drum.length))
     theta = equal_steps(STEPS)
     found = {-1: np.full(STEPS, np.nan), 1: np.full(STEPS, np.nan)}
     steepest, leans = 0.0, np.zeros(STEPS)
@@ -157,7 +163,8 @@ def run(drum: Drum, asked: Asked) -> Run:
         line = track.lower if gauge.side < 0 else track.upper
         beside = gauge.level - follower.level
         guide = follower.guide(beside)
-        guess = _guessed(gauge, guide, line, (probe, float(follower.radius_at(probe)), _aside(follower)))
+        size = asked.radius + (probe - (follower.at or 0.0)) * follower.growth
+        guess = _guessed(gauge, guide, line, (probe, size, _aside(follower)))
         found[gauge.side] = _placed(drum, gauge, guide, guess, theta)
         lean = _leaning(follower, beside, gauge.side, found[gauge.side])
         leans = np.where(np.abs(lean) > np.abs(leans), lean, leans)
@@ -169,6 +176,13 @@ def run(drum: Drum, asked: Asked) -> Run:
     lever = gauges[0].lever
     error = (CORNERS * drum.sag + math.sqrt(3.0) * drum.rounding) / max(math.cos(steepest), 0.1) / lever
     return Run(track.kind, follower, floor, lower, upper, leans, error, distance)
+
+
+def _flanks(kind: Kind, depth: float, distance: float) -> Track:
+    """What is cut: flanks of a track, by its depth and the distance of two rollers, mm."""
+    if kind == "groove":
+        return Groove(depth)
+    return Rib(depth, distance) if kind == "rib" else End(kind, depth)
 
 
 # --- tracks -----------------------------------------------------------------------------------------------------------
@@ -199,9 +213,9 @@ def _track(drum: Drum, asked: Asked, radius: float) -> _Track:
         tracks["bottom"] = [_Track("bottom", none, first)]
     kind = asked.kind
     if kind is None:
-        shown = [name for name in ("groove", "rib") if tracks[name]] or [
-            name for name in ("top", "bottom") if tracks[name]
-        ]
+        inner: tuple[Kind, ...] = ("groove", "rib")
+        ends: tuple[Kind, ...] = ("top", "bottom")
+        shown = [name for name in inner if tracks[name]] or [name for name in ends if tracks[name]]
         if not shown:
             raise UnknownError(f"no groove, rib or end face that rises and falls is found at {radius:.6g} mm")
         if len(shown) > 1:

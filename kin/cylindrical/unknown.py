@@ -25,7 +25,7 @@ from kin.read.step.patch import Patch
 if TYPE_CHECKING:
     from pathlib import Path
 
-    from kin.numeric.arrays import Array, Mask
+    from kin.numeric.arrays import Array, Indices, Mask
     from kin.read.step.shell import Shell
 
 AxisName = Literal["x", "y", "z"]
@@ -146,8 +146,8 @@ class Drum:
         """
         if len(self.floors):
             low, high = float(z.min()), float(z.max())
-            own = [r for r, bottom, top in self.floors if bottom <= low and high <= top]
-            return max(own, default=math.nan)
+            radii = [r for r, bottom, top in self.floors if bottom <= low and high <= top]
+            return max(radii, default=math.nan)
         out = np.einsum("nk,nk->n", self.normals[:, :2], self.facets[..., :2].mean(axis=1)) > 0.0
         low, high = self.facets[..., 2].min(axis=1), self.facets[..., 2].max(axis=1)
         own, at = self._meetings(theta, out, low <= z.max(), high >= z.min())
@@ -155,7 +155,7 @@ class Drum:
         corners = np.stack([self.phi[own], self.facets[own][..., 2]], axis=-1)
         place = np.stack([theta[at] - turned, z[at]], axis=-1)
         with np.errstate(divide="ignore", invalid="ignore"):
-            shares = _shares(*np.moveaxis(corners, 1, 0), place)
+            shares = _shares(corners[:, 0], corners[:, 1], corners[:, 2], place)
         hit = np.isfinite(shares).all(axis=1) & (shares >= -1e-9).all(axis=1)
         met = np.full(len(theta), np.nan)
         np.fmax.at(met, at[hit], np.einsum("nk,nk->n", shares[hit], self.r[own[hit]]))
@@ -173,7 +173,7 @@ class Drum:
         high = [*z[up].tolist(), *flat[flat[:, 3] > 0.0, 0].tolist()]
         return min(low, default=0.0), max(high, default=self.length)
 
-    def _meetings(self, theta: Array, *kept: Mask) -> tuple[Array, Array]:
+    def _meetings(self, theta: Array, *kept: Mask) -> tuple[Indices, Indices]:
         """Numbers of facets and of angles (m,), (m,) that may meet, of the facets that are kept."""
         low, high = self.phi.min(axis=1), self.phi.max(axis=1)
         chosen = np.logical_and.reduce(kept)
@@ -280,7 +280,7 @@ def _round_about(flat: Array) -> float | None:
     return radius if float(most.min()) >= (1.0 - ROUND) * radius else None
 
 
-def _bore(points: Array, corners: Array) -> tuple[float | None, bool]:
+def _bore(points: Array, corners: Indices) -> tuple[float | None, bool]:
     """Radius, mm, of what the lowest face leaves about the axis, None without; and whether it is no circle."""
     level = (np.abs(points[corners][..., 2]) <= SAME * max(1.0, float(np.abs(points).max()))).all(axis=1)
     chosen = corners[level]
@@ -304,7 +304,7 @@ def _bore(points: Array, corners: Array) -> tuple[float | None, bool]:
     return math.sqrt(0.5 * float(area) / math.pi), False
 
 
-def _sag(points: Array, corners: Array, radius: float) -> float:
+def _sag(points: Array, corners: Indices, radius: float) -> float:
     """How far facets of flanks stand off a surface through their corners, mm: a width times its turn, over eight."""
     facets = points[corners]
     normal = np.cross(facets[:, 1] - facets[:, 0], facets[:, 2] - facets[:, 0])

@@ -4,7 +4,7 @@
 from __future__ import annotations
 
 import math
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Literal
 
 from camgeo.capabilities.cylindrical.followed import FollowedDrum
 from camgeo.capabilities.follow.extension import OtherInputs
@@ -24,8 +24,9 @@ if TYPE_CHECKING:
     from pathlib import Path
 
 KINDS = ("auto", "groove", "rib", "top", "bottom")
-APEX = "axis"
+APEX: Literal["axis"] = "axis"
 STEEPEST = 45.0  # degrees, of a cone's half angle
+UNMOVED = 1e-6  # mm of a lower face that lies at 0
 ON_ARM = ("length", "offset", "pivot")
 
 
@@ -36,25 +37,29 @@ def _add_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("--from", type=length, dest="bears_from", metavar="R", help=text)
     text = "where it ends (default: radius of the drum); --arm is its length, y and height of its pivot"
     parser.add_argument("--to", type=length, dest="bears_to", metavar="R", help=text)
-    text = "half angle in degrees of a conical roller, or axis: it has its radius half way along its length"
-    parser.add_argument("--taper", type=_taper, metavar="DEG", help=text)
+    text = (
+        "half angle in degrees of a conical roller, or axis; and where it has its radius, mm (default: half way): 5,44"
+    )
+    parser.add_argument("--taper", type=_taper, metavar="DEG[,AT]", help=text)
     parser.add_argument("--distance", type=length, metavar="D", help="of both rollers' axes about a rib, mm")
     text = "flank of a groove by which the roller is held, or middle for midway between both (default: lower)"
     parser.add_argument("--flank", choices=("lower", "upper", "middle"), default="lower", help=text)
-    parser.add_argument("--axis", choices=("x", "y", "z"), default="z", help="axis of the drum in the file (default: z)")
+    parser.add_argument(
+        "--axis", choices=("x", "y", "z"), default="z", help="axis of the drum in the file (default: z)"
+    )
     text = "height over the lower face, mm, of the track of a drum with several, at angle 0"
     parser.add_argument("--height", type=length, metavar="Z", help=text)
 
 
-def _taper(text: str) -> float | str:
+def _taper(text: str) -> tuple[float | Literal["axis"], float | None]:
     import argparse
 
-    if text == APEX:
-        return text
+    angle, _, at = text.partition(",")
     try:
-        return decimal(text)
+        return "axis" if angle == APEX else decimal(angle), decimal(at) if at else None
     except ValueError:
-        raise argparse.ArgumentTypeError(f"an angle in degrees or axis is expected, not {text}") from None
+        problem = f"an angle in degrees or axis, and perhaps a length in mm, is expected, not {escaped(text)}"
+        raise argparse.ArgumentTypeError(problem) from None
 
 
 def _follow(arguments: argparse.Namespace) -> FollowedDrum:
@@ -91,10 +96,8 @@ def _follow(arguments: argparse.Namespace) -> FollowedDrum:
     unjudged = ""
     if placed._replace(mirrored=False) != Placed() or abs(drum.below) > UNMOVED:
         unjudged = "a page judges a file as it lies, its lower face at z = 0: leave axis, at and turn out, or page"
-    return FollowedDrum(path, drum, moved, arguments.flank, arguments.rotation, arguments.reading, arguments.units, unjudged)
-
-
-UNMOVED = 1e-6  # mm of a lower face that lies at 0
+    said = arguments.flank, arguments.rotation, arguments.reading, arguments.turn, arguments.units
+    return FollowedDrum(path, drum, moved, *said, unjudged)
 
 
 def _demand_solid(path: Path) -> None:
@@ -112,8 +115,8 @@ def _demand_solid(path: Path) -> None:
 
 def _asked(arguments: argparse.Namespace) -> Asked:
     """The roller and its guide; raises CallError for what does not go together."""
-    inner, outer, taper = arguments.bears_from, arguments.bears_to, arguments.taper
-    for name, value in (("from", inner), ("to", outer), ("distance", arguments.distance)):
+    inner, outer, (taper, at) = arguments.bears_from, arguments.bears_to, arguments.taper or (0.0, None)
+    for name, value in (("from", inner), ("to", outer), ("distance", arguments.distance), ("taper's place", at)):
         if value is not None and not value > 0.0:
             raise CallError(f"{name} is a length above 0, not {value:.6g}")
     if not arguments.reading > 0.0:
@@ -124,12 +127,13 @@ def _asked(arguments: argparse.Namespace) -> Asked:
     if arguments.arm is not None:
         if len(arguments.arm) != len(ON_ARM) or not arguments.arm[0] > 0.0:
             raise CallError("the arm of a drum has its length, and y and height of its pivot, mm: --arm 90,88.6,50")
-        arm = Arm(*arguments.arm, -1 if arguments.leading else 1)
+        along, offset, pivot = arguments.arm
+        arm = Arm(along, offset, pivot, -1 if arguments.leading else 1)
         if arguments.offset:
             raise CallError("an arm has its own offset: leave --offset out")
     elif arguments.leading:
         raise CallError("only an arm leads: give --arm, or leave --leading out")
-    if isinstance(taper, float) and not 0.0 < taper < STEEPEST:
+    if taper != APEX and arguments.taper is not None and not 0.0 < taper < STEEPEST:
         raise CallError(f"a taper lies above 0 and below {STEEPEST:g} degrees")
     return Asked(
         arguments.roller,
@@ -137,7 +141,8 @@ def _asked(arguments: argparse.Namespace) -> Asked:
         inner,
         outer,
         arguments.offset,
-        APEX if taper == APEX else math.radians(taper or 0.0),
+        taper if taper == APEX else math.radians(taper),
+        at,
         arm,
         arguments.height,
         arguments.distance,

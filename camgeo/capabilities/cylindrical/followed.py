@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import json
 import math
 from functools import cached_property
 from typing import TYPE_CHECKING, Any, Literal
@@ -11,7 +10,7 @@ import numpy as np
 
 from camgeo.common.errors import CallError
 from camgeo.common.terminal import escaped
-from camgeo.motions.recognised import MOST_LEFT, STROKES_BEGIN, Recognised, roundest
+from camgeo.motions.recognised import MOST_LEFT, STROKES_BEGIN, Recognised
 from kin.follower.measured import MeasuredMotion
 from kin.follower.recognised import recognised
 from kin.numeric.angles import TURN
@@ -21,7 +20,9 @@ from kin.numeric.records import dataclass, replace
 if TYPE_CHECKING:
     from pathlib import Path
 
+    from camgeo.common.units import Units
     from camgeo.schema.change import Value
+    from kin.cylindrical.guide import Unit
     from kin.cylindrical.running import Run
     from kin.cylindrical.unknown import Drum
     from kin.follower.measured import MeasuredDwell
@@ -31,7 +32,7 @@ if TYPE_CHECKING:
 Flank = Literal["lower", "upper", "middle"]
 
 SPREAD = 3  # steps to both sides, over which a velocity is taken
-FINE = 1e-6  # mm: lengths below this are the numbers' rounding
+ROOM = 0.25  # of the reading, by which round numbers may move the motion
 
 
 @dataclass(frozen=True, eq=False)
@@ -70,7 +71,7 @@ class FollowedDrum:
     """The motion of a roller on a drum: what was read, and what the roller does; mm or rad.
 
     `flank` is that on which a roller in a groove is held; `reading`, mm, is within how much a dwell rests and a recipe
-    keeps to the motion; `unjudged` says why no page is made, and is empty where one is.
+    keeps to the motion; `turn`, degrees, is that of the file; `unjudged` says why no page is made, and is empty where one is.
     """
 
     path: Path
@@ -79,16 +80,12 @@ class FollowedDrum:
     flank: Flank
     rotation: str
     reading: float
-    units: str | None = None
+    turn: float = 0.0
+    units: Units | None = None
     unjudged: str = ""
 
     @property
-    def swings(self) -> bool:
-        """Whether the roller is on an arm."""
-        return self.run.follower.arm is not None
-
-    @property
-    def unit(self) -> str:
+    def unit(self) -> Unit:
         """Unit of positions as they are shown."""
         return self.run.follower.unit
 
@@ -130,13 +127,17 @@ class FollowedDrum:
         """The reading as a position, mm or rad."""
         return self.reading / self.lever
 
+    @property
+    def room(self) -> float:
+        """By how much round numbers may move a position, mm or rad: as facets say, or by a share of the reading."""
+        return max(self.run.error, ROOM * self.within)
+
     @cached_property
     def rests(self) -> list[MeasuredDwell]:
         """Dwells in the order of the turn."""
         nothing = np.zeros(len(self.position))
         rows, ends = np.stack([self.position, nothing, nothing]), (float(self.position.min()), 0.0)
-        unit: Literal["mm", "rad"] = "rad" if self.swings else "mm"
-        motion = MeasuredMotion(unit, self.theta, rows, nothing, nothing, ends, (float(self.position.max()), 0.0))
+        motion = MeasuredMotion(self.unit, self.theta, rows, nothing, nothing, ends, (float(self.position.max()), 0.0))
         return motion.dwells(self.within)
 
     @cached_property
@@ -158,8 +159,8 @@ class FollowedDrum:
         least = float(self.position.min())
         if self.programme is None:
             return None, [], least, "there are no strokes between dwells or turning points"
-        programme, error, most = self.programme, self.run.error, MOST_LEFT * self.within
-        # as round as facets leave it open, where that moves nothing by more than they do; else as the residuals say
+        programme, error, most = self.programme, self.room, MOST_LEFT * self.within
+        # as round as the room lets them be, if the motion stays within it; else as the residuals say
         angles, levels = programme.uncertainty
         open_ = np.maximum(angles, error * programme.hidden.boundaries), np.maximum(levels, error)
         near = min(programme.greatest + error, most)
@@ -171,7 +172,9 @@ class FollowedDrum:
         if why == STROKES_BEGIN:
             first = next((rest for rest in self.rests), None)
             if first is not None:
-                why += f": give --turn={-math.degrees(0.5 * (first.begin + first.end)):.6g} to begin in a dwell"
+                middle = math.degrees(0.5 * (first.begin + first.end))
+                turned = self.turn + (middle if self.rotation == "ccw" else -middle)
+                why += f": give --turn={math.remainder(turned, 360.0):.6g} to begin in a dwell"
         if segments is None:
             return None, [], least, why
         lines = known.lines()
@@ -252,7 +255,9 @@ class FollowedDrum:
         """What is to be known besides, in words."""
         told = [*self.drum.remarks]
         if self.run.error > self.within:
-            told.append(f"facets say less than the reading: give a finer file, or reading {self.lever * self.run.error:.2g}")
+            told.append(
+                f"facets say less than the reading: give a finer file, or reading {self.lever * self.run.error:.2g}"
+            )
         if self.drum.keyed:
             told.append("the bore is no circle: name its form in part, the recipe has a round one")
         if self.run.kind == "groove" and self.flank != "lower":
@@ -264,7 +269,9 @@ class FollowedDrum:
         told, unit = self.document(), self.unit
         least, most, play = told["least"], told["greatest"], told["play"]
         rows = [f"{escaped(told['file'])}: {told['follower']}"]
-        rows.append(f"  drum of radius {self.drum.radius:.6g} mm, {self.drum.length:.6g} long, its floor at {self.run.floor:.6g}")
+        rows.append(
+            f"  drum of radius {self.drum.radius:.6g} mm, {self.drum.length:.6g} long, floor at {self.run.floor:.6g} mm"
+        )
         rows.append(
             f"  lift {told['lift']:.6g} {unit}: from {least['position']:.6g} at {least['at_deg']:.6g} degrees "
             f"to {most['position']:.6g} at {most['at_deg']:.6g}"
@@ -316,7 +323,9 @@ class FollowedDrum:
         if self.play is not None:
             columns[f"play_{unit}"] = scale * self.play
         rows = np.column_stack(list(columns.values())) + 0.0
-        return "\n".join([",".join(columns), *(",".join(f"{value:.12g}" for value in row) for row in rows.tolist()), ""])
+        return "\n".join(
+            [",".join(columns), *(",".join(f"{value:.12g}" for value in row) for row in rows.tolist()), ""]
+        )
 
     def lifts(self) -> str | None:
         """Lifts over the turn as CSV text, from the least position on; None where the recipe has a programme."""
@@ -329,67 +338,9 @@ class FollowedDrum:
 
     def recipe(self, table: str) -> str:
         """Text of a recipe of a drum with this motion: its programme, or lifts that are in the file `table`."""
-        segments, _, zero, _ = self.told
-        about = f"The motion of {escaped(self.path.name)} under a {self.words}, within {self.reading:.6g} mm"
-        if segments is None:
-            motion = f"{{table: {json.dumps(table, ensure_ascii=False)}, reading: {self.scale * self.within:.6g}}}"
-        else:
-            motion = "[" + ", ".join("{" + ", ".join(f"{k}: {_text(v)}" for k, v in row.items()) + "}" for row in _rows(segments)) + "]"
-        keys, part = self._keys(zero)
-        lines = [
-            f"about: {json.dumps(about, ensure_ascii=False)}",
-            f"rotation: {self.rotation}",
-            "cam:",
-            "  kind: cylindrical",
-            *(f"  {key}: {value}" for key, value in keys.items()),
-            f"  motion: {motion}",
-            f"part: {{{', '.join(f'{key}: {value:.9g}' for key, value in part.items())}}}",
-            "export:",
-            f"  tolerance: {2.0 * self.reading:.6g}",
-            "  files: [stl, {csv: {as: motion}}, html]",
-            "",
-        ]
-        return "\n".join(lines)
+        from camgeo.capabilities.cylindrical.followed_recipe import recipe_of
 
-    def _keys(self, zero: float) -> tuple[dict[str, str], dict[str, float]]:
-        """Keys of the cam without its motion, and of the part; `zero` is the position at lift 0."""
-        drum, run, follower = self.drum, self.run, self.run.follower
-        unsure = max(drum.sag, FINE)
-        radius, floor = roundest(drum.radius, unsure), roundest(run.floor, unsure)
-        base, top = 0.0, drum.length
-        if run.kind in {"top", "bottom"}:
-            base, top = drum.core(run.floor + 2.0 * unsure)
-        own = [f"radius: {follower.radius:.9g}", f"from: {roundest(follower.inner, unsure):.9g}"]
-        if drum.radius - follower.outer > unsure:
-            own.append(f"to: {follower.outer:.9g}")
-        if follower.offset:
-            own.append(f"offset: {follower.offset:.9g}")
-        if follower.taper:
-            own.append(f"taper: {math.degrees(follower.taper):.12g}")
-        height = zero
-        if (arm := follower.arm) is not None:
-            side = "trailing" if arm.side > 0 else "leading"
-            lengths = f"length: {arm.length:.9g}, offset: {arm.offset:.9g}, pivot: {arm.pivot - base:.9g}"
-            own.append(f"arm: {{{lengths}, side: {side}}}")
-            height = arm.pivot + arm.length * math.sin(zero)
-        depth = radius - floor
-        track = {"top": "{end: top}", "bottom": "{end: bottom}"}.get(run.kind, "")
-        if run.kind == "groove" and self.play is not None:
-            clear = float(np.median(self.lever * self.play * np.cos(run.lean)))
-            clear = roundest(clear, self.lever * run.error) if clear > self.lever * run.error else 0.0
-            track = f"{{groove: {{depth: {depth:.9g}, clearance: {clear:.9g}}}}}"
-        if run.kind == "rib":
-            track = f"{{rib: {{distance: {roundest(run.distance or 0.0, run.error):.9g}, depth: {depth:.9g}}}}}"
-        keys = {
-            "radius": f"{radius:.9g}",
-            "track": track,
-            "follower": f"{{{', '.join(own)}}}",
-            "pitch_height": f"{roundest(height - base, self.lever * run.error):.9g}",
-        }
-        part = {"length": roundest(top - base, unsure)}
-        if drum.bore is not None:
-            part["bore"] = roundest(2.0 * drum.bore, unsure)
-        return keys, part
+        return recipe_of(self, table)
 
     def page(self) -> str:
         """The page of the recipe, with the verdict on the file.
@@ -408,13 +359,7 @@ class FollowedDrum:
             if (lifts := self.lifts()) is not None:
                 (Path(folder) / "lift.csv").write_text(lifts, encoding="utf-8")
             text, name = self.recipe("lift.csv"), escaped(self.path.stem)
-            recipe = replace(load_order_text(text, str(Path(folder) / "follow.yaml"), escaped(str(self.path))), name=name)
+            recipe = replace(
+                load_order_text(text, str(Path(folder) / "follow.yaml"), escaped(str(self.path))), name=name
+            )
             return verify(recipe, self.path, units=self.units, page=True).page or ""
-
-
-def _rows(segments: list[Value]) -> list[dict[str, Value]]:
-    return [row for row in segments if isinstance(row, dict)]
-
-
-def _text(value: Value) -> str:
-    return f"{value:.9g}" if isinstance(value, float) else str(value)
