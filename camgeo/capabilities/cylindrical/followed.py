@@ -71,7 +71,8 @@ class FollowedDrum:
     """The motion of a roller on a drum: what was read, and what the roller does; mm or rad.
 
     `flank` is that on which a roller in a groove is held; `reading`, mm, is within how much a dwell rests and a recipe
-    keeps to the motion; `turn`, degrees, is that of the file; `unjudged` says why no page is made, and is empty where one is.
+    keeps to the motion; `turn`, degrees, is that of the file; `unjudged` says why no page is made, and is empty where
+    one is.
     """
 
     path: Path

@@ -100,7 +100,7 @@ def test_other_files_give_it_back(form: str, tolerance: str, tmp_path: Path, fol
 
 
 @pytest.mark.parametrize(
-    ("text", "words", "track", "height"),
+    "case",
     [
         (RIB, ("--roller", "10"), {"rib": {"distance": 50, "depth": 12}}, 40),
         (TOP, ("--roller", "10", "--from", "38"), {"end": "top"}, 20),
@@ -114,8 +114,9 @@ def test_other_files_give_it_back(form: str, tolerance: str, tmp_path: Path, fol
     ids=["rib", "top", "cone"],
 )
 def test_other_tracks_give_theirs_back(
-    text: str, words: tuple[str, ...], track: Any, height: float, tmp_path: Path, follow: Callable[..., Any]
+    case: tuple[str, tuple[str, ...], Any, float], tmp_path: Path, follow: Callable[..., Any]
 ) -> None:
+    text, words, track, height = case
     told, recipe, rows = follow(made(text, tmp_path), "--drum", "auto", *words)
     cam = recipe["cam"]
     assert (cam["motion"], cam["track"], cam["pitch_height"]) == (MOTION, track, height)
