@@ -117,7 +117,9 @@ def run(drum: Drum, asked: Asked) -> Run:
     nothing or metal stands in its way.
     """
     outer = drum.radius if asked.outer is None else asked.outer
-    if not outer <= drum.radius * (1.0 + BENEATH) or (asked.inner is not None and not asked.inner < (1.0 - BENEATH) * outer):
+    if not outer <= drum.radius * (1.0 + BENEATH) or (
+        asked.inner is not None and not asked.inner < (1.0 - BENEATH) * outer
+    ):
         begins = "" if asked.inner is None else f"from {asked.inner:.6g} "
         raise UnknownError(
             f"the blank is at {drum.radius:.6g} mm, and the roller bears {begins}to {outer:.6g} mm",

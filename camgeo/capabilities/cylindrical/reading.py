@@ -322,5 +322,6 @@ def _built(values: Values, document: Document, reader: Reader) -> DrumRecipe:
         undercut=cam.get("undercut", "refuse"),
         drive=Drive(**cam.get("drive", {})),
         limits=build_bounds(values.get("limits", {})),
+        profile=values.get("made", {}).get("profile"),
         **vars(document),
     )
