@@ -33,6 +33,7 @@ SETTLED = 1e-9  # mm
 ALIKE = 0.1  # of the roller's radius, within which nine of ten points of a drum lie
 MOST = 0.9
 BEYOND = 0.05  # of the depth of the flank, by which points may lie beyond it
+LOOKED = 400  # points of a wrong drum that are looked at
 TRIED = 360  # turns of a wrong drum that are tried
 RING = 0.25  # mm, within which points are of one radius
 LEAST_RING, WIDEST = 36, math.radians(20.0)  # points round a radius, and the widest gap between them
@@ -209,8 +210,7 @@ def _demand_alike(drum: DrumIntent, gauges: Sequence[Gauge], places: Array, flan
         room = BEYOND * (drum.radius - drum.floor)
         if np.mean((r > drum.floor - room) & (r < drum.radius + room)) < MOST:
             return math.inf
-        e = np.concatenate([each.e for each in _sorted(gauges, drum, own, flank)])
-        return float(np.quantile(np.where(np.isfinite(e), np.abs(e), np.inf), MOST))
+        return _off(gauges, drum, own, flank)
 
     limit, here = ALIKE * drum.follower.radius, off(places)
     if here <= limit:
@@ -230,16 +230,16 @@ def _demand_alike(drum: DrumIntent, gauges: Sequence[Gauge], places: Array, flan
     for words, tried in ways:
         if off(tried) <= limit:
             raise UnlikeError(f"these points look as if {words}")
-    few = places[:: max(len(places) // 400, 1)], flank[:: max(len(places) // 400, 1)]
     if math.isfinite(here):
-        turns = [_off_turned(gauges, drum, few, k * TURN / TRIED) for k in range(TRIED)]
-        best = int(np.argmin(turns))
-        if turns[best] <= limit:
-            angle = math.remainder(-best * 360.0 / TRIED, 360.0) * (-1.0 if drum.mirrored else 1.0)
+        some = slice(None, None, max(len(places) // LOOKED, 1))
+        few = places[some], flank[some]
+        turn = _best(gauges, drum, few, 0, TURN / TRIED * np.arange(TRIED))
+        if turn is not None:
+            angle = math.degrees(math.remainder(-turn, TURN)) * (-1.0 if drum.mirrored else 1.0)
             raise UnlikeError(f"these points look turned by about {angle:.0f} degrees: turn them back, then align")
-        shift = _shifted(gauges, drum, places, flank)
-        if abs(shift) > limit and off(places - [0.0, 0.0, shift]) <= limit:
-            raise UnlikeError(f"these points look shifted along z by about {shift:.4g} mm: count from the lower face")
+        shift = _best(gauges, drum, few, 1, np.arange(-drum.length, drum.length, limit))
+        if shift is not None:
+            raise UnlikeError(f"these points look shifted along z by about {-shift:.3g} mm: count from the lower face")
         raise UnlikeError(f"these points are of another drum: one of ten is {here:.3g} mm or more off its flanks")
     r = np.hypot(places[:, 0], places[:, 1])
     raise UnlikeError(
@@ -248,22 +248,21 @@ def _demand_alike(drum: DrumIntent, gauges: Sequence[Gauge], places: Array, flan
     )
 
 
-def _off_turned(gauges: Sequence[Gauge], drum: DrumIntent, few: tuple[Array, Indices], turn: float) -> float:
-    """Distance, mm, within which most of some points lie that are turned, rad."""
-    places = _moved(few[0], np.array([turn, 0.0, 0.0, 0.0, 0.0, 0.0]))
-    e = np.concatenate([each.e for each in _sorted(gauges, drum, places, few[1])])
+def _off(gauges: Sequence[Gauge], drum: DrumIntent, places: Array, flank: Indices) -> float:
+    """Distance, mm, within which most points lie."""
+    e = np.concatenate([each.e for each in _sorted(gauges, drum, places, flank)])
     return float(np.quantile(np.where(np.isfinite(e), np.abs(e), np.inf), MOST))
 
 
-def _shifted(gauges: Sequence[Gauge], drum: DrumIntent, places: Array, flank: Indices) -> float:
-    """Median height, mm, of points over the exact flanks of their own."""
-    heights = []
-    for k, gauge in enumerate(gauges):
-        own = places[(flank == (0 if gauge.side < 0 else 1)) | ((flank == ANY) & (k == 0))]
-        if len(own):
-            r = np.clip(np.hypot(own[:, 0], own[:, 1]), drum.floor, drum.radius)
-            heights.append(own[:, 2] - gauge.surface(np.arctan2(own[:, 1], own[:, 0]), r))
-    return float(np.median(np.concatenate(heights))) if heights else 0.0
+def _best(
+    gauges: Sequence[Gauge], drum: DrumIntent, few: tuple[Array, Indices], unknown: int, tried: Array
+) -> float | None:
+    """The value of an unknown that brings points to the drum; None where none of those tried does."""
+    values = np.zeros((len(tried), len(UNKNOWNS)))
+    values[:, unknown] = tried
+    off = [_off(gauges, drum, _moved(few[0], row), few[1]) for row in values]
+    best = int(np.argmin(off))
+    return float(tried[best]) if off[best] <= ALIKE * drum.follower.radius else None
 
 
 # --- the motion -------------------------------------------------------------------------------------------------------

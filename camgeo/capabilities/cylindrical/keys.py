@@ -502,6 +502,11 @@ FILES: dict[str, Format] = {
     "html": replace(FORMATS["html"], options=FieldTable(())),
 }
 """Formats of the files of a cylindrical cam, with the options that they take."""
+MADE = mapping(
+    "made",
+    "how measured points of its flanks are judged",
+    length("profile", "width of the tolerance zone of a flank, ISO 1101: half of it to either side"),
+)
 RECIPE = FieldTable(
     (
         *(CORE.field(name) for name in ("name", "about", "units", "rotation")),
@@ -521,10 +526,6 @@ RECIPE = FieldTable(
             ),
         ),
         LIMITS,
-        mapping(
-            "made",
-            "how measured points of its flanks are judged",
-            length("profile", "width of the tolerance zone of a flank, ISO 1101: half of it to either side"),
-        ),
+        MADE,
     )
 )

@@ -113,7 +113,7 @@ def test_metal_too_large_with_a_burr(drum: Flanks) -> None:
     assert outer["outliers"] == [burr + 2]
     inner = made["rings"][0]
     steepest = math.degrees(math.atan(40.0 * 2.0 / math.radians(120.0) / 38.0))
-    assert inner["worst"] == pytest.approx(0.005 / math.cos(math.radians(steepest)), abs=2e-6)
+    assert inner["worst"] == pytest.approx(0.005 / math.cos(math.radians(steepest)), abs=1e-5)
     assert made["rings"][-1]["worst"] < 0.0  # above the roller metal pushes it down
     # both flanks take the play away: 0.03 - 2 times 0.005 in a dwell
     assert made["play"]["least"] == pytest.approx(0.02, abs=1e-5)
@@ -124,9 +124,9 @@ def test_metal_too_large_with_a_burr(drum: Flanks) -> None:
 
 
 def test_shifted_along_its_axis(drum: Flanks) -> None:
-    path = drum.written(drum.places + [0.0, 0.0, 0.02])
+    path = drum.written(drum.places + np.array([0.0, 0.0, 0.02]))
     made = drum.verified(path)["made"]
-    assert all(ring["mean"] == pytest.approx(0.02, abs=1e-6) for ring in made["rings"])
+    assert all(ring["mean"] == pytest.approx(0.02, abs=1e-5) for ring in made["rings"])
     assert made["verdicts"]["made-profile lower"] == "failed"
     placed = drum.verified(path, align="height")["made"]
     assert placed["placing"]["shifted along z"]["value"] == pytest.approx(0.02, abs=1e-7)
@@ -199,7 +199,7 @@ def test_noise_has_an_uncertainty(drum: Flanks) -> None:
         (lambda p: p * 25.4, "x,y,z", "they were in mm, and are read as inches"),
         (lambda p: p * [1.0, -1.0, 1.0], "x,y,z", "they were mirrored: change rotation"),
         (lambda p: p[:, [1, 0, 2]] * [-1.0, 1.0, 1.0], "x,y,z", "turned by about 90 degrees"),
-        (lambda p: p + [0.0, 0.0, 5.0], "x,y,z", "shifted along z by about 5 mm"),
+        (lambda p: p + np.array([0.0, 0.0, 5.0]), "x,y,z", "shifted along z by about 5 mm"),
         (lambda p: p * [0.5, 0.5, 1.0], "x,y,z", "another drum: they lie 19"),
         (
             lambda p: p,
