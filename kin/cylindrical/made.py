@@ -233,11 +233,11 @@ def _demand_alike(drum: DrumIntent, gauges: Sequence[Gauge], places: Array, flan
     if math.isfinite(here):
         some = slice(None, None, max(len(places) // LOOKED, 1))
         few = places[some], flank[some]
-        turn = _best(gauges, drum, few, 0, TURN / TRIED * np.arange(TRIED))
+        turn = _best(gauges, drum, few, 0, TURN / TRIED * np.arange(TRIED, dtype=np.float64))
         if turn is not None:
             angle = math.degrees(math.remainder(-turn, TURN)) * (-1.0 if drum.mirrored else 1.0)
             raise UnlikeError(f"these points look turned by about {angle:.0f} degrees: turn them back, then align")
-        shift = _best(gauges, drum, few, 1, np.arange(-drum.length, drum.length, limit))
+        shift = _best(gauges, drum, few, 1, np.arange(-drum.length, drum.length, limit, dtype=np.float64))
         if shift is not None:
             raise UnlikeError(f"these points look shifted along z by about {-shift:.3g} mm: count from the lower face")
         raise UnlikeError(f"these points are of another drum: one of ten is {here:.3g} mm or more off its flanks")

@@ -6,7 +6,7 @@ from __future__ import annotations
 import math
 from typing import TYPE_CHECKING, Literal
 
-from camgeo.capabilities.cylindrical.followed import FollowedDrum
+from camgeo.capabilities.cylindrical.followed_recipe import Drawn
 from camgeo.capabilities.follow.extension import OtherInputs
 from camgeo.cli.arguments import decimal, length
 from camgeo.common.errors import CallError
@@ -62,7 +62,7 @@ def _taper(text: str) -> tuple[float | Literal["axis"], float | None]:
         raise argparse.ArgumentTypeError(problem) from None
 
 
-def _follow(arguments: argparse.Namespace) -> FollowedDrum:
+def _follow(arguments: argparse.Namespace) -> Drawn:
     """Motion of a roller on a drum; raises CallError for a wrong call or file, and where it touches nothing."""
     from camgeo.common.arguments import path_of
 
@@ -97,7 +97,7 @@ def _follow(arguments: argparse.Namespace) -> FollowedDrum:
     if placed._replace(mirrored=False) != Placed() or abs(drum.below) > UNMOVED:
         unjudged = "a page judges a file as it lies, its lower face at z = 0: leave axis, at and turn out, or page"
     said = arguments.flank, arguments.rotation, arguments.reading, arguments.turn, arguments.units
-    return FollowedDrum(path, drum, moved, *said, unjudged)
+    return Drawn(path, drum, moved, *said, unjudged)
 
 
 def _demand_solid(path: Path) -> None:

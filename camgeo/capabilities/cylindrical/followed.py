@@ -1,4 +1,4 @@
-"""The motion that a drum of unknown origin gives a roller, as text, table, recipe and page."""
+"""The motion that a drum of unknown origin gives a roller, as text and table."""
 
 from __future__ import annotations
 
@@ -8,7 +8,6 @@ from typing import TYPE_CHECKING, Any, Literal
 
 import numpy as np
 
-from camgeo.common.errors import CallError
 from camgeo.common.terminal import escaped
 from camgeo.motions.recognised import MOST_LEFT, STROKES_BEGIN, Recognised
 from kin.follower.measured import MeasuredMotion
@@ -336,31 +335,3 @@ class FollowedDrum:
         rows = zip(np.degrees(self.theta).tolist(), (np.round(lift, 9) + 0.0).tolist(), strict=True)
         end = [f"360,{lift[0] + 0.0:.9f}\n"]
         return "".join(["angle,lift\n", *(f"{angle:.12g},{value:.9f}\n" for angle, value in rows), *end])
-
-    def recipe(self, table: str) -> str:
-        """Text of a recipe of a drum with this motion: its programme, or lifts that are in the file `table`."""
-        from camgeo.capabilities.cylindrical.followed_recipe import recipe_of
-
-        return recipe_of(self, table)
-
-    def page(self) -> str:
-        """The page of the recipe, with the verdict on the file.
-
-        Raises CallError where `unjudged` says why, RecipeErrors where the recipe is refused.
-        """
-        import tempfile
-        from pathlib import Path
-
-        from camgeo.api.run import verify
-        from camgeo.recipe.loading import load_order_text
-
-        if self.unjudged:
-            raise CallError(self.unjudged)
-        with tempfile.TemporaryDirectory(prefix="camgeo-") as folder:
-            if (lifts := self.lifts()) is not None:
-                (Path(folder) / "lift.csv").write_text(lifts, encoding="utf-8")
-            text, name = self.recipe("lift.csv"), escaped(self.path.stem)
-            recipe = replace(
-                load_order_text(text, str(Path(folder) / "follow.yaml"), escaped(str(self.path))), name=name
-            )
-            return verify(recipe, self.path, units=self.units, page=True).page or ""

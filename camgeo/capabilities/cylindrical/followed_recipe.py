@@ -1,4 +1,4 @@
-"""The recipe of a drum whose motion was followed: its keys, as round as the file's facets let them be."""
+"""The recipe of a drum whose motion was followed, as round as the file's facets let it be, and its page."""
 
 from __future__ import annotations
 
@@ -8,17 +8,49 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from camgeo.capabilities.cylindrical.followed import FollowedDrum
+from camgeo.common.errors import CallError
 from camgeo.common.terminal import escaped
 from camgeo.motions.recognised import roundest
+from kin.numeric.records import replace
 
 if TYPE_CHECKING:
-    from camgeo.capabilities.cylindrical.followed import FollowedDrum
     from camgeo.schema.change import Value
 
 FINE = 1e-6  # mm: lengths below this are the numbers' rounding
 
 
-def recipe_of(followed: FollowedDrum, table: str) -> str:
+class Drawn(FollowedDrum):
+    """A followed drum that is written as a recipe, and judged by it on a page."""
+
+    def recipe(self, table: str) -> str:
+        """Text of a recipe of a drum with this motion: its programme, or lifts that are in the file `table`."""
+        return _recipe_of(self, table)
+
+    def page(self) -> str:
+        """The page of the recipe, with the verdict on the file.
+
+        Raises CallError where `unjudged` says why, RecipeErrors where the recipe is refused.
+        """
+        import tempfile
+        from pathlib import Path
+
+        from camgeo.api.run import verify
+        from camgeo.recipe.loading import load_order_text
+
+        if self.unjudged:
+            raise CallError(self.unjudged)
+        with tempfile.TemporaryDirectory(prefix="camgeo-") as folder:
+            if (lifts := self.lifts()) is not None:
+                (Path(folder) / "lift.csv").write_text(lifts, encoding="utf-8")
+            text, name = self.recipe("lift.csv"), escaped(self.path.stem)
+            recipe = replace(
+                load_order_text(text, str(Path(folder) / "follow.yaml"), escaped(str(self.path))), name=name
+            )
+            return verify(recipe, self.path, units=self.units, page=True).page or ""
+
+
+def _recipe_of(followed: FollowedDrum, table: str) -> str:
     """Text of a recipe of a drum with this motion: its programme, or lifts that are in the file `table`."""
     segments, _, zero, _ = followed.told
     about = f"The motion of {escaped(followed.path.name)} under a {followed.words}, within {followed.reading:.6g} mm"
