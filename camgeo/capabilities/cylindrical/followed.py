@@ -256,7 +256,7 @@ class FollowedDrum:
         told = [*self.drum.remarks]
         if self.run.error > self.within:
             told.append(
-                f"facets say less than the reading: give a finer file, or reading {self.lever * self.run.error:.2g}"
+                f"facets stand off by more than the reading: give a finer file, or reading {self.lever * self.run.error:.2g}"
             )
         if self.drum.keyed:
             told.append("the bore is no circle: name its form in part, the recipe has a round one")
