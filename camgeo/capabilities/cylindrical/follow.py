@@ -153,5 +153,14 @@ ANSWERS = OtherInputs(
     option="drum",
     add_arguments=_add_arguments,
     follow=_follow,
+    alone={
+        "--from": ("bears_from", None),
+        "--to": ("bears_to", None),
+        "--taper": ("taper", None),
+        "--distance": ("distance", None),
+        "--flank": ("flank", "lower"),
+        "--axis": ("axis", "z"),
+        "--height": ("height", None),
+    },
     solids="follow a drum by --drum auto and --roller with its radius",
 )

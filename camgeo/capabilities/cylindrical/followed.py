@@ -255,9 +255,8 @@ class FollowedDrum:
         """What is to be known besides, in words."""
         told = [*self.drum.remarks]
         if self.run.error > self.within:
-            told.append(
-                f"facets stand off by more than the reading: give a finer file, or reading {self.lever * self.run.error:.2g}"
-            )
+            needed = f"{self.lever * self.run.error:.2g}"
+            told.append(f"facets stand off by more than the reading: give a finer file, or reading {needed}")
         if self.drum.keyed:
             told.append("the bore is no circle: name its form in part, the recipe has a round one")
         if self.run.kind == "groove" and self.flank != "lower":

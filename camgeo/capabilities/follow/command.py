@@ -12,6 +12,7 @@ from camgeo.capabilities.follow.extension import OTHER_INPUTS
 from camgeo.capabilities.follow.follower import TRACKS
 from camgeo.cli.arguments import decimal, length, lengths, name_of
 from camgeo.cli.exit_status import OK
+from camgeo.common.errors import CallError
 from camgeo.common.terminal import escaped, say, say_json
 from camgeo.common.units import UNIT_MM
 from kin.follower.measured import LEAST_DWELL
@@ -95,6 +96,7 @@ def run(arguments: argparse.Namespace) -> int:
     from camgeo.capabilities.follow.library import follow, judged_by_recipe
     from camgeo.cli.new_file import demand_new, write_new
 
+    _demand_own(arguments)
     for name in OTHER_INPUTS.answering():
         answers = OTHER_INPUTS[name]
         if answers.follow is not None and getattr(arguments, answers.option) is not None:
@@ -140,6 +142,16 @@ def run(arguments: argparse.Namespace) -> int:
     else:
         say(summary(followed))
     return OK
+
+
+def _demand_own(arguments: argparse.Namespace) -> None:
+    """Raise CallError for an option that goes with another one, such as --drum, which is not given."""
+    for name in OTHER_INPUTS.answering():
+        answers = OTHER_INPUTS[name]
+        if answers.option and getattr(arguments, answers.option) is None:
+            for option, (attribute, unset) in answers.alone.items():
+                if getattr(arguments, attribute) != unset:
+                    raise CallError(f"{option} goes with --{answers.option}: give both, or leave {option} out")
 
 
 def _lifts_beside(arguments: argparse.Namespace) -> str | None:

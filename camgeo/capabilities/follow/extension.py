@@ -4,12 +4,12 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any, Protocol
 
-from camgeo.registry.slot import NO_CHECK, Slot
+from camgeo.registry.slot import EMPTY, NO_CHECK, Slot
 from kin.numeric.records import dataclass
 
 if TYPE_CHECKING:
     import argparse
-    from collections.abc import Callable
+    from collections.abc import Callable, Mapping
 
 
 class FollowedOver(Protocol):
@@ -46,6 +46,7 @@ class OtherInputs:
 
     option         attribute of the arguments that is not None where its motion is asked for; empty: it has none
     add_arguments  adds the options of its own to the parser of the command
+    alone          options that go with that one alone: their attributes, and what these are where they are not given
     follow         the motion by the arguments of the command; raises CallError where there is none
     solids         remedy for a solid that is no disc; empty where no such solid is followed
     """
@@ -54,6 +55,7 @@ class OtherInputs:
     add_arguments: Callable[[argparse.ArgumentParser], None] = NO_CHECK
     follow: Callable[[argparse.Namespace], FollowedOver] | None = None
     solids: str = ""
+    alone: Mapping[str, tuple[str, object]] = EMPTY
 
 
 OTHER_INPUTS = Slot("follow", OtherInputs())

@@ -260,4 +260,4 @@ def _outline(path: Path, unit: float | None, gap: float | None) -> Contour:
     raise CallError(f"{escaped(str(path))}: a drawing or a solid is expected")
 
 
-ANSWERS = OtherInputs(option="linear", add_arguments=_add_arguments, follow=_follow)
+ANSWERS = OtherInputs(option="linear", add_arguments=_add_arguments, follow=_follow, alone={"--lean": ("lean", 0.0)})

@@ -255,6 +255,20 @@ def test_wrong_calls(grooved: Path, capsys: pytest.CaptureFixture[str], words: t
     assert told in capsys.readouterr().err
 
 
+@pytest.mark.parametrize(
+    ("words", "told"),
+    [
+        (("--from", "38"), "--from goes with --drum: give both, or leave --from out"),
+        (("--axis", "x"), "--axis goes with --drum"),
+    ],
+)
+def test_options_of_drums_alone(
+    grooved: Path, capsys: pytest.CaptureFixture[str], words: tuple[str, ...], told: str
+) -> None:
+    assert main(["follow", str(grooved), "--roller", "10", *words]) == 2
+    assert told in capsys.readouterr().err
+
+
 def test_a_turn_that_begins_in_a_stroke_has_a_table(grooved: Path, follow: Callable[..., Any]) -> None:
     told, recipe, _ = follow(grooved, "--drum", "auto", "--roller", "10", "--turn=-60")
     assert "table" in recipe["cam"]["motion"]
