@@ -47,11 +47,16 @@ class Library(Protocol):
 
 
 def root_of_kind(
-    run: Callable[[], OwnKind[Any, Any]], library: Callable[[], Library], kind: str, judged: str
+    run: Callable[[], OwnKind[Any, Any]],
+    library: Callable[[], Library],
+    kind: str,
+    judged: str,
+    points: Callable[[Any, FileCall], dict[str, Any]] | None = None,
 ) -> Root[Any]:
     """Functions of a kind of cam, from its run and its answers in the library, each imported when it is called.
 
-    `kind` is its `cam.kind`; `judged` names the files of it that are judged: `a drawing of the plate`.
+    `kind` is its `cam.kind`; `judged` names the files of it that are judged: `a drawing of the plate`. `points` judges
+    points measured on it, (recipe, arguments of `verify`); without it they are refused.
     """
 
     def export(recipe: Any, out: Path, only: tuple[str, ...], progress: Callable[[str], None]) -> Outcome:  # noqa: ANN401
@@ -80,7 +85,7 @@ def root_of_kind(
         export=export,
         check=check,
         judge=lambda recipe, paths, *bounds: run().report_on(recipe, paths, bounds),
-        claimed=claimed,
+        claimed=claimed if points is None else lambda recipe, _, call: points(recipe, call),
         explain=explain,
         foresee=lambda recipe: library().foreseen(recipe),
         show=lambda recipe, paths, *bounds: run().report_and_page(recipe, paths, bounds),

@@ -22,6 +22,7 @@ if TYPE_CHECKING:
 
     from camgeo.files.layer_outline import LayerOutline
     from camgeo.files.mesh import Mesh
+    from camgeo.measures.extension import Results
     from camgeo.measures.placed import Figure
     from camgeo.measures.rule_remark import RuleRemark
     from camgeo.motions.stated import StatedMotion
@@ -220,6 +221,18 @@ class OwnKind(Generic[D, V]):
         run = self._judged(recipe, paths, bounds)
         report = run.report
         return report, self.page(run.design, run.made, report)
+
+    def claimed(self, recipe: Order, judge: Callable[[D, Clock], Results]) -> dict[str, Any]:
+        """Report on files that no judge of this kind reads, such as measured points, by what `judge` finds of them.
+
+        Raises RecipeErrors where there is no such cam, and what `judge` raises.
+        """
+        clock = Clock()
+        design = self.designed(recipe, clock)
+        checks, figures = self._examined(design, clock)
+        results = judge(design, clock)
+        run = self._run(design, figures, [], [*checks, *results.checks], clock=clock)
+        return replace(run, findings=replace(run.findings, sections=results.sections)).report
 
     def scene(self, design: D) -> dict[str, Any]:
         """Data of the script of a page without files, with its `panels`, `checks` and `remarks`."""

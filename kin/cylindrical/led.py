@@ -22,7 +22,6 @@ import numpy as np
 
 from kin.cylindrical.lifts import widened
 from kin.cylindrical.roller import BESIDE, WITHIN, Course, Gauge, Held, Near, Place, Stand
-from kin.numeric.angles import TURN
 from kin.numeric.errors import UnsettledError
 from kin.numeric.records import dataclass
 

@@ -13,8 +13,8 @@ from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
+from kin.follower.recognised import COVERAGE
 from kin.made.local_faults import STANDS_OUT, local_faults, within
-from kin.made.motion import COVERAGE
 from kin.made.placing import ILL, conditions, least_squares
 from kin.made.smooth import fit
 from kin.numeric.angles import TURN

@@ -13,6 +13,7 @@ import numpy as np
 
 from kin.contour.arcs import turned
 from kin.follower.frame_contact import CENTRED, QUARTER, WAYS, driven
+from kin.follower.recognised import COVERAGE
 from kin.made.local_faults import within
 from kin.made.metal import Metal
 from kin.numeric.angles import TURN
@@ -39,7 +40,6 @@ STEPS = 24  # of Gauss and Newton's method
 STILL = 1e-13  # rad
 UNEXPLAINED = 0.25  # share of the square of an error: a cause that explains it leaves less
 RAISED = 1e-4  # mm by which metal is raised for the gain of the motion
-COVERAGE = 2.0  # standard deviations: about 95 % (GUM)
 
 
 class Felt(NamedTuple):

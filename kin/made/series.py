@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
-from kin.made.motion import COVERAGE
+from kin.follower.recognised import COVERAGE
 
 if TYPE_CHECKING:
     from collections.abc import Mapping

@@ -38,6 +38,7 @@ SLIPS = (
     ("offset: ", "offset: 9"),
     ("taper: ", "taper: 8"),
     ("taper: axis", "taper: apex"),
+    ("profile: ", "profile: -"),
 )
 TURN_SLIPS = (
     ("turns: ", "turns: 1"),
@@ -152,6 +153,7 @@ def slipped(rng: Random, number: int) -> Attack:
     """A random drum with a slip in it: it is refused, or made, and nothing is half written."""
     track, led = rng.choice(["groove", "rib", "top"]), rng.choice(LED)
     text, _ = random_drum(rng, track, inch=False, ccw=False, undercut=False, led=led)
+    text += "made: {profile: 0.03}\n"
     old, new = rng.choice([slip for slip in SLIPS if slip[0] in text])
     text = text.replace("files: [stl]", "files: [csv]").replace(old, new, 1)
     return Attack(f"slipped drum {number}", ("check", "drum.yaml"), {"drum.yaml": text.encode()}, (0, 1, 2))

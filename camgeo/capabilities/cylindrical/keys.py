@@ -130,6 +130,7 @@ class DrumRecipe(ShaftOrder):
 
     `radius` is the blank's; `guide` leads the roller's axis, or the middle between the rollers of a rib, over the lower
     face, z = 0. The thickness of `part` is the drum's length. The motion repeats after so many `turns`.
+    Measured flanks have a tolerance zone of the width `profile`, None without one.
     """
 
     root: ClassVar[str] = "cylindrical"
@@ -144,6 +145,7 @@ class DrumRecipe(ShaftOrder):
     drive: Drive = Drive()
     limits: tuple[Bound, ...] = ()
     turns: int = 1
+    profile: float | None = None
 
     __repr__ = ShaftOrder.__repr__
 
@@ -552,6 +554,11 @@ FILES: dict[str, Format] = {
     "html": replace(FORMATS["html"], options=FieldTable(())),
 }
 """Formats of the files of a cylindrical cam, with the options that they take."""
+MADE = mapping(
+    "made",
+    "how measured points of its flanks are judged",
+    length("profile", "width of the tolerance zone of a flank, ISO 1101: half of it to either side"),
+)
 RECIPE = FieldTable(
     (
         *(CORE.field(name) for name in ("name", "about", "units", "rotation")),
@@ -571,5 +578,6 @@ RECIPE = FieldTable(
             ),
         ),
         LIMITS,
+        MADE,
     )
 )

@@ -388,5 +388,6 @@ def _built(values: Values, document: Document, reader: Reader) -> DrumRecipe:
         turns=cam.get("turns", 1),
         drive=Drive(**cam.get("drive", {})),
         limits=build_bounds(values.get("limits", {})),
+        profile=values.get("made", {}).get("profile"),
         **vars(document),
     )

@@ -12,6 +12,7 @@ if TYPE_CHECKING:
 
     from camgeo.api.own_kind import Library
     from camgeo.capabilities.cylindrical.keys import DrumRecipe
+    from camgeo.output.extension import FileCall
     from camgeo.output.own_kind import OwnKind
     from camgeo.schema.fields import FieldTable
     from camgeo.schema.reader import Reader
@@ -48,5 +49,11 @@ def _library() -> Library:
     return library
 
 
+def _points(recipe: DrumRecipe, call: FileCall) -> dict[str, Any]:
+    from camgeo.capabilities.cylindrical.made_points import judge
+
+    return _run().claimed(recipe, lambda design, clock: judge(design, call, clock))
+
+
 READING = Reading(table=_table, read=_read, reader=_reader, noun="cylindrical cam", instead="the recipe of a disc cam")
-ROOT = root_of_kind(_run, _library, "cylindrical", "a solid or a development of the drum")
+ROOT = root_of_kind(_run, _library, "cylindrical", "a solid or a development of the drum", _points)

@@ -12,6 +12,7 @@ from camgeo.capabilities.follow.extension import OTHER_INPUTS
 from camgeo.capabilities.follow.follower import TRACKS
 from camgeo.cli.arguments import decimal, length, lengths, name_of
 from camgeo.cli.exit_status import OK
+from camgeo.common.errors import CallError
 from camgeo.common.terminal import escaped, say, say_json
 from camgeo.common.units import UNIT_MM
 from kin.follower.measured import LEAST_DWELL
@@ -95,6 +96,7 @@ def run(arguments: argparse.Namespace) -> int:
     from camgeo.capabilities.follow.library import follow, judged_by_recipe
     from camgeo.cli.new_file import demand_new, write_new
 
+    _demand_own(arguments)
     for name in OTHER_INPUTS.answering():
         answers = OTHER_INPUTS[name]
         if answers.follow is not None and getattr(arguments, answers.option) is not None:
@@ -142,21 +144,35 @@ def run(arguments: argparse.Namespace) -> int:
     return OK
 
 
+def _demand_own(arguments: argparse.Namespace) -> None:
+    """Raise CallError for an option that goes with another one, such as --drum, which is not given."""
+    for name in OTHER_INPUTS.answering():
+        answers = OTHER_INPUTS[name]
+        if answers.option and getattr(arguments, answers.option) is None:
+            for option, (attribute, unset) in answers.alone.items():
+                if getattr(arguments, attribute) != unset:
+                    raise CallError(f"{option} goes with --{answers.option}: give both, or leave {option} out")
+
+
 def _lifts_beside(arguments: argparse.Namespace) -> str | None:
     """Path of the table of lifts beside the recipe that is asked for; None without one."""
     return None if arguments.recipe is None else str(Path(arguments.recipe).with_suffix(".csv"))
 
 
 def _print_other(arguments: argparse.Namespace, followed: FollowedOver) -> int:
-    """Print a motion over another input than a turn, write its table and recipe; returns the exit status 0."""
+    """Print a motion of another cam than a disc, write its table, recipe and page; returns the exit status 0."""
     from camgeo.cli.new_file import demand_new, write_new
 
     lifts = _lifts_beside(arguments)
-    demand_new({"--table": arguments.table, "--recipe": arguments.recipe, "the lifts of --recipe": lifts})
+    writers = {"--table": arguments.table, "--recipe": arguments.recipe, "--page": arguments.page}
+    demand_new({**writers, "the lifts of --recipe": lifts})
     texts = {} if arguments.table is None else {arguments.table: followed.table()}
     if arguments.recipe is not None and lifts is not None:
         texts[arguments.recipe] = followed.recipe(Path(lifts).name)
-        texts[lifts] = followed.lifts()
+        if (rows := followed.lifts()) is not None:
+            texts[lifts] = rows
+    if arguments.page is not None:
+        texts[arguments.page] = followed.page()
     write_new(texts)
     if arguments.json:
         from camgeo.report.document import as_json

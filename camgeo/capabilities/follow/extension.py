@@ -4,12 +4,12 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any, Protocol
 
-from camgeo.registry.slot import NO_CHECK, Slot
+from camgeo.registry.slot import EMPTY, NO_CHECK, Slot
 from kin.numeric.records import dataclass
 
 if TYPE_CHECKING:
     import argparse
-    from collections.abc import Callable
+    from collections.abc import Callable, Mapping
 
 
 class FollowedOver(Protocol):
@@ -31,8 +31,12 @@ class FollowedOver(Protocol):
         """Text of a recipe of a cam with this motion, whose lifts are in the file `table`; CallError where none is."""
         ...
 
-    def lifts(self) -> str:
-        """Lifts over the input as CSV text that the recipe reads."""
+    def lifts(self) -> str | None:
+        """Lifts over the input as CSV text that the recipe reads; None where it needs none."""
+        ...
+
+    def page(self) -> str:
+        """HTML of the page of that recipe, with the verdict on the file; raises CallError where none is made."""
         ...
 
 
@@ -42,12 +46,16 @@ class OtherInputs:
 
     option         attribute of the arguments that is not None where its motion is asked for; empty: it has none
     add_arguments  adds the options of its own to the parser of the command
+    alone          options that go with that one alone: their attributes, and what these are where they are not given
     follow         the motion by the arguments of the command; raises CallError where there is none
+    solids         remedy for a solid that is no disc; empty where no such solid is followed
     """
 
     option: str = ""
     add_arguments: Callable[[argparse.ArgumentParser], None] = NO_CHECK
     follow: Callable[[argparse.Namespace], FollowedOver] | None = None
+    solids: str = ""
+    alone: Mapping[str, tuple[str, object]] = EMPTY
 
 
 OTHER_INPUTS = Slot("follow", OtherInputs())

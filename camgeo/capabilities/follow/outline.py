@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Literal, NamedTuple
 
 import numpy as np
 
+from camgeo.capabilities.follow.extension import OTHER_INPUTS
 from camgeo.common.errors import CallError
 from camgeo.common.rounding import upward
 from camgeo.common.terminal import escaped
@@ -35,6 +36,7 @@ if TYPE_CHECKING:
 MOST_LISTED = 20  # bodies in a message
 LEAST_SEVERAL = 2
 NEAR = 1e-3  # of the way from a section to the nearest face, at which its contour is looked at again
+ROUND = 1e-3  # of a radius, within which the section of a round solid is round, of triangles too
 STEEPEST = 0.5  # greatest draft of a disc's walls, a length by one of height
 MOST_NAMED = 3  # holes that a message offers for the shaft
 DEEPEST = {"external": MOST_CONTOURS, "internal": 1, "groove": MOST_CONTOURS}  # what is drawn in a bore is passed over
@@ -229,6 +231,7 @@ def _read_section(path: Path, asked: Reading) -> _Found:
             raise
         raise _unchosen(path, bodies, mm, "give body, the number or the name of one") from error
     _demand_plain(path, solid, partial(read, deepest=deepest))
+    _demand_disc(path, solid, partial(read, deepest=deepest), (asked.at[0] / mm, asked.at[1] / mm))
     if asked.track == "groove" and len(solid.faces) > 1:
         height = 0.5 * (solid.faces[-1] + solid.faces[-2])
         return _Found(scaled(read((height,), deepest=deepest).section(height).chains, mm))
@@ -248,9 +251,40 @@ def _demand_plain(path: Path, solid: ReadSolid, read: Callable[[Sequence[float]]
     beside = [cut.chains[0].contour for cut in read((height - step, height + step)).sections]
     moved = max(float(np.abs(other.distance(own.vertices)).max()) for other in beside)
     if moved > STEEPEST * step:
-        name = escaped(str(path))
-        remedy = f"judge a cylindrical cam by its recipe: camgeo verify RECIPE {name}"
-        raise CallError(f"{name}: no disc, its contour changes with the height of the section; {remedy}")
+        raise _no_disc(path, "its contour changes with the height of the section")
+
+
+def _demand_disc(
+    path: Path, solid: ReadSolid, read: Callable[[Sequence[float]], ReadSolid], at: tuple[float, float]
+) -> None:
+    """Raise CallError for a solid whose section is round about the shaft, and another at its leaning faces: an end cam.
+
+    A round disc with chamfers or a draft is round there, too.
+    """
+    rows = solid.leaning
+    if not len(rows) or not _is_round(solid.chains[0].contour, at):
+        return
+    height = float(np.median(0.5 * (rows[:, 0] + rows[:, 1])))
+    try:
+        whole = _is_round(read((height,)).chains[0].contour, at)
+    except ReadError:  # several pieces, or none about the shaft
+        whole = False
+    if not whole:
+        raise _no_disc(path, "its section is round, and its faces lean beside that, as of an end cam")
+
+
+def _is_round(contour: Contour, at: tuple[float, float]) -> bool:
+    """Whether a contour, lines round a circle perhaps, is round about a place."""
+    radii = np.hypot(*(contour.vertices - at).T)
+    return bool(np.ptp(radii) <= ROUND * radii.max())
+
+
+def _no_disc(path: Path, why: str) -> CallError:
+    """Make the error for a solid that is no disc, with how such ones are followed."""
+    name = escaped(str(path))
+    ways = [OTHER_INPUTS[answering].solids for answering in OTHER_INPUTS.answering()]
+    remedy = f"judge a cylindrical cam by its recipe: camgeo verify RECIPE {name}"
+    return CallError(f"{name}: no disc, {why}; {', or '.join([*filter(None, ways), remedy])}")
 
 
 def _body_of(path: Path, body: int | str, mm: float) -> Callable[..., ReadSolid]:

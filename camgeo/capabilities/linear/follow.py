@@ -36,6 +36,7 @@ STEPS = 720  # of the travel
 LEAST_REST = 10  # steps that a dwell lasts at least
 LEAST_OVERRUN = 1.0  # mm beyond the contacts of a recipe
 STEEPEST = 80.0  # degrees that a stem may lean
+NO_PAGE = "no page is made of a plate: leave --page out; `camgeo verify --page` by its recipe makes one"
 
 
 @dataclass(frozen=True, eq=False)
@@ -164,6 +165,10 @@ class FollowedPlate:
         ]
         return "\n".join(lines)
 
+    def page(self) -> str:
+        """Raise CallError: there is none."""
+        raise CallError(NO_PAGE)
+
     def _end_contacts(self) -> tuple[float, float]:
         """Places along x, mm, at which the follower touches the plate at its first and last input."""
         s, guide = self.position, self.guide
@@ -192,7 +197,7 @@ def _follow(arguments: argparse.Namespace) -> FollowedPlate:
     if len(span) != len(("from", "to")) or not span[0] < span[1]:
         raise CallError("linear takes two inputs in mm, the lesser first, such as --linear 0,120")
     if arguments.page is not None:
-        raise CallError("no page is made of a plate: leave --page out; `camgeo verify --page` by its recipe makes one")
+        raise CallError(NO_PAGE)
     of_discs = (arguments.flat, arguments.yoke, arguments.offset, arguments.track != "external", arguments.across)
     if any(of_discs) or arguments.mirror or arguments.turn or arguments.body is not None:
         raise CallError("a plate is followed by a roller, a shoe or a knife edge: leave the other options out")
@@ -255,4 +260,4 @@ def _outline(path: Path, unit: float | None, gap: float | None) -> Contour:
     raise CallError(f"{escaped(str(path))}: a drawing or a solid is expected")
 
 
-ANSWERS = OtherInputs(option="linear", add_arguments=_add_arguments, follow=_follow)
+ANSWERS = OtherInputs(option="linear", add_arguments=_add_arguments, follow=_follow, alone={"--lean": ("lean", 0.0)})

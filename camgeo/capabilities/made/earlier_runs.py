@@ -17,7 +17,8 @@ from camgeo.measures.extension import Results
 from camgeo.measures.rule_remark import RuleRemark
 from camgeo.measures.units import UNIT_NAMES, report_unit
 from camgeo.report.document import align
-from kin.made.motion import COVERAGE, contact_errors, paired
+from kin.follower.recognised import COVERAGE
+from kin.made.motion import contact_errors, paired
 from kin.numeric.angles import degrees
 from kin.numeric.feet import equal_steps
 

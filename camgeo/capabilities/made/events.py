@@ -17,8 +17,8 @@ from camgeo.measures.lobe import CRANK, EventError, event_of, lift_pieces
 from camgeo.measures.units import report_unit
 from camgeo.recipe.extension import KEYS
 from camgeo.recipe.figures import FIGURES
+from kin.follower.recognised import COVERAGE
 from kin.made.events import MadeMotion
-from kin.made.motion import COVERAGE
 
 if TYPE_CHECKING:
     from camgeo.capabilities.made.made_part import PartMade

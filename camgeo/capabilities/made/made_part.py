@@ -12,8 +12,9 @@ from camgeo.capabilities.made.keys import ZONE_PATH, Made, datum_of
 from camgeo.capabilities.made.part_points import demand_points, name_of, part_points, read_tables
 from camgeo.measures.units import UNIT_NAMES
 from camgeo.synthesis.intent import closures_between, permitted
+from kin.follower.recognised import COVERAGE
 from kin.made.causes import causes
-from kin.made.motion import COVERAGE, Errors, MadePlay, OutputErrors, between, contact_errors, output_errors, paired
+from kin.made.motion import Errors, MadePlay, OutputErrors, between, contact_errors, output_errors, paired
 from kin.made.points import FREE, profile, settled
 from kin.made.smooth import SmoothFit, fit
 from kin.numeric.angles import degrees

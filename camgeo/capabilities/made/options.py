@@ -11,7 +11,7 @@ from camgeo.common.arguments import short_repr
 from camgeo.common.errors import CallError
 from camgeo.schema.quantity import read_quantity
 from camgeo.schema.scalars import Complaint
-from kin.made.motion import COVERAGE
+from kin.follower.recognised import COVERAGE
 from kin.numeric.records import dataclass
 from kin.read.drive_tables import is_drive
 from kin.read.formats import FORMATS

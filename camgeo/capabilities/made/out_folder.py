@@ -18,7 +18,7 @@ from camgeo.common.errors import SurroundingsError
 from camgeo.files.markup import one_line
 from camgeo.files.table import write_table
 from camgeo.measures.units import UNIT_NAMES, report_unit
-from kin.made.motion import COVERAGE
+from kin.follower.recognised import COVERAGE
 from kin.numeric.feet import equal_steps
 from kin.numeric.records import replace
 

@@ -17,8 +17,8 @@ if TYPE_CHECKING:
 _OPTIONS = {
     "as": CallOption("what a table of numbers is: by its heading if not given", choices=("measured", "grinding")),
     "align": CallOption(
-        "place the points by least squares before the motion is judged too (default: none)",
-        choices=("none", "rotation", "best-fit"),
+        "place the points by least squares before the motion is judged too; height is of drums (default: none)",
+        choices=("none", "rotation", "height", "rotation-height", "best-fit"),
     ),
     "probe_radius": CallOption("points are centres of a ball of this radius; of a lift, that of its roller", "R"),
     "probe_face": CallOption("of a lift, the indicator has a flat face of this width on the stem's line", "W"),

@@ -11,7 +11,8 @@ from camgeo.capabilities.made.extension import ON_METAL, MadeMotion
 from camgeo.capabilities.made.made_part import motion_uncertainty
 from camgeo.capabilities.made.part_points import name_of
 from camgeo.measures.units import UNIT_NAMES, report_unit
-from kin.made.motion import COVERAGE, least_fault
+from kin.follower.recognised import COVERAGE
+from kin.made.motion import least_fault
 from kin.numeric.angles import degrees
 from kin.numeric.feet import equal_steps
 

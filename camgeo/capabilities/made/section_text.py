@@ -23,7 +23,10 @@ def shown(report: dict[str, Any], *, everything: bool) -> str:
         else:
             verdict = "NOT PROVED"
     lines = [f"{report['recipe']}: {verdict}  {escaped(', '.join(section['files']))}"]
-    rows = (shaft_rows if "lobes" in section else table_rows)(section, everything=everything)
+    if "rows" in section:  # of a kind of its own, which words them itself
+        rows = section["rows"]
+    else:
+        rows = (shaft_rows if "lobes" in section else table_rows)(section, everything=everything)
     lines += [f"  {label:<30}{value}" for label, value in rows]
     lines += [f"  remark: {text}" for text in section["remarks"]]
     for check in report["checks"]:

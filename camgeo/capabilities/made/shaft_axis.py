@@ -9,8 +9,8 @@ import numpy as np
 
 from camgeo.measures.units import UNIT_NAMES
 from kin.contour.arcs import turned
+from kin.follower.recognised import COVERAGE
 from kin.made.axis import CamShift, axis_of
-from kin.made.motion import COVERAGE
 from kin.made.smooth import TRIFLE
 from kin.numeric.angles import degrees
 from kin.numeric.records import replace

@@ -31,16 +31,16 @@ from camgeo.cli.extension import Started
 from camgeo.common.errors import CallError
 from camgeo.common.terminal import escaped
 from camgeo.measures.units import UNIT_NAMES, report_unit
+from camgeo.motions.recognised import MOST_LEFT, STROKES_BEGIN, Recognised, roundest
 from camgeo.recipe.recipe import file_bytes, load_text
 from camgeo.schema.change import replace_entry, set_value
 from camgeo.schema.errors import RecipeErrors
 from camgeo.schema.yaml_source import Mapping, Scalar, Source, entries, read_source
 from camgeo.synthesis.design import designed
 from kin.follower.motion_error import ContactError
+from kin.follower.recognised import COVERAGE, recognised
 from kin.law.normalised import IntentError
-from kin.made.motion import COVERAGE
 from kin.made.point_motion import SurfaceRun, measured_motion
-from kin.made.recognised import recognised
 from kin.made.series import STANDS_OUT, support_series
 from kin.made.smooth import GapError
 from kin.numeric.errors import UnsettledError
@@ -56,16 +56,13 @@ if TYPE_CHECKING:
     from camgeo.recipe.recipe import Recipe
     from camgeo.schema.change import Value
     from camgeo.schema.yaml_source import Node
+    from kin.follower.recognised import Programme
     from kin.made.point_motion import PointMotion
-    from kin.made.recognised import Programme
     from kin.numeric.arrays import Array, Indices
     from kin.read.points import PointTable
 
 READING = 0.02  # mm within which dwells rest and laws fit, where the recipe gives no zone of its profile
-MOST_LEFT = 2.0  # readings by which laws may be off: beyond, the motion is a table
-ROUND = (1.0, 0.5, 0.1, 0.05, 0.01, 0.005, 0.001, 0.0005, 0.0001)  # steps of written numbers, coarsest first
 MOST_UNEVEN = 0.02  # of the motion: points farther off the symmetry of a kind of cam are of another kind
-AT_ZERO = 3.0  # degrees: a stroke that ends or begins so near the turn's beginning is tried as one that does so there
 BESIDE = 8  # points to either side by polar angle, among which the flanks of a groove are told apart
 
 
@@ -117,13 +114,14 @@ def _by_strokes(measured: _MeasuredCam, source: Source, name: str) -> tuple[Sour
     keys, made, lines = measured.keys, source, []
     if measured.base is not None:
         mm, unit = measured.recipe.mm, UNIT_NAMES[measured.recipe.units]
-        base = _number(measured.base / mm, measured.base_uncertainty / mm)
+        base = roundest(measured.base / mm, measured.base_uncertainty / mm)
         made = _with(made, f"cam.{keys.base}", base)
         measured_base = f"{measured.base / mm:.6g} +- {measured.base_uncertainty / mm:.2g} {unit}"
         lines.append(f"base radius {measured_base}; {base:.9g} is written")
     segments, why = None, "there are no strokes between dwells or turning points"
     if measured.programme is not None:
-        segments, why = _segments(measured, measured.programme)
+        segments, why = _told(measured, measured.programme).segments()
+        why += ": turn the points so that it begins in a dwell" if why == STROKES_BEGIN else ""
     beside: dict[str, str] = {}
     if segments is None or measured.programme is None:
         table = f"{Path(name).stem}-lift.csv"
@@ -335,94 +333,23 @@ def _unit(measured: _MeasuredCam) -> str:
     return report_unit(measured.recipe, measured.motion.gauge.unit)[1]
 
 
-def _number(value: float, uncertainty: float) -> float:
-    """The roundest number within an uncertainty of a value, to nine digits where no step of `ROUND` is."""
-    for step in ROUND:
-        near = round(value / step) * step
-        if abs(near - value) <= max(uncertainty, 0.5 * ROUND[-1]):
-            return float(f"{near:.9g}")
-    return float(f"{value:.9g}")
-
-
 def _rounded(value: float, unsure: float) -> float:
     """The roundest number within an uncertainty of a value, else six digits; 0 for a value within its noise."""
     if abs(value) <= STANDS_OUT * unsure:
         return 0.0
-    rounded = _number(value, unsure)
+    rounded = roundest(value, unsure)
     return rounded if abs(rounded - value) <= unsure else float(f"{value:.6g}")
 
 
-def _segments(measured: _MeasuredCam, programme: Programme) -> tuple[list[Value] | None, str]:
-    """Segments of the motion from angle 0 on, in the recipe's unit and degrees; else None, and the reason."""
-    motion, whole = measured.motion, math.degrees(measured.motion.span)
-    angles = [
-        _angle(measured, float(k), float(off))
-        for k, off in zip(programme.boundaries, programme.uncertainty[0], strict=True)
-    ]
-    order = sorted(programme.strokes, key=lambda stroke: angles[stroke.first])
-    if any(0.0 < angles[stroke.last] < angles[stroke.first] for stroke in order):
-        return None, "the turn begins within a stroke: turn the points so that it begins in a dwell"
-    # rounded, the strokes must still fit the points
-    heights = _heights(measured, programme)
-    unit = math.radians(1.0) if motion.gauge.unit == "deg" else measured.recipe.mm
-    levels = _zero(measured, programme) + unit * np.array(heights)
-    left = programme.written(motion, np.radians(angles), levels).greatest
-    if left > MOST_LEFT * measured.reading:
-        return None, f"the laws that fit best leave {_in_unit(measured, left):.3g} {_unit(measured)}"
-    segments: list[Value] = []
-    at = 0.0
-    for stroke in order:
-        begin, end = angles[stroke.first], angles[stroke.last] or whole
-        if begin > at:
-            segments.append({"dwell": float(f"{begin - at:.9g}")})
-        height = float(f"{heights[stroke.high] - heights[stroke.low]:.9g}")
-        kind = "rise" if height > 0.0 else "return"
-        segments.append({kind: abs(height), "over": float(f"{end - begin:.9g}"), "law": stroke.law})
-        at = end
-    if at < whole:
-        segments.append({"dwell": float(f"{whole - at:.9g}")})
-    return segments, ""
-
-
-def _angle(measured: _MeasuredCam, boundary: float, uncertainty: float) -> float:
-    """A boundary in degrees, as round as its uncertainty permits: from 0 to less than 360, or to the end of a part."""
-    motion = measured.motion
-    if not motion.closed and abs(math.degrees(boundary - motion.span)) <= AT_ZERO:
-        return math.degrees(motion.span)
-    near = _number(math.degrees(math.remainder(boundary, 2.0 * math.pi)), math.degrees(uncertainty))
-    return 0.0 if abs(near) <= AT_ZERO else near % 360.0
-
-
-def _zero(measured: _MeasuredCam, programme: Programme) -> float:
-    """Position at which a recipe's displacement is 0: the least over a turn, the first over a part of one."""
-    return float(programme.levels.min() if measured.motion.closed else programme.levels[0])
-
-
-def _heights(measured: _MeasuredCam, programme: Programme) -> list[float]:
-    """Levels above the zero of displacements, in the recipe's unit or degrees, rounded by their uncertainty."""
-    above = programme.levels - _zero(measured, programme)
-    pairs = zip(above.tolist(), programme.uncertainty[1].tolist(), strict=True)
-    return [_number(_in_unit(measured, height), _in_unit(measured, unsure)) for height, unsure in pairs]
+def _told(measured: _MeasuredCam, programme: Programme) -> Recognised:
+    """The recognised motion, in the recipe's unit or degrees."""
+    most = MOST_LEFT * measured.reading
+    return Recognised(measured.motion, programme, most, _in_unit(measured, 1.0), _unit(measured))
 
 
 def _stroke_lines(measured: _MeasuredCam, programme: Programme) -> list[str]:
-    """Lines of text on each recognised stroke: height, angles and law, with uncertainties."""
-    unsure, lines = programme.uncertainty[0], []
-    order = sorted(programme.strokes, key=lambda s: _angle(measured, programme.boundaries[s.first], unsure[s.first]))
-    for number, stroke in enumerate(order, start=1):
-        begin, end = (math.degrees(programme.boundaries[k]) for k in (stroke.first, stroke.last))
-        begin = math.remainder(begin, 360.0) if begin > 360.0 - AT_ZERO else begin
-        end = begin + (end - begin) % 360.0
-        widest = max(math.degrees(unsure[k]) for k in (stroke.first, stroke.last))
-        height = _in_unit(measured, float(programme.levels[stroke.high] - programme.levels[stroke.low]))
-        off = _in_unit(measured, float(np.hypot(*(programme.uncertainty[1][k] for k in (stroke.low, stroke.high)))))
-        law = f"{stroke.law} leaves {_in_unit(measured, stroke.residual):.2g} {_unit(measured)}"
-        if stroke.others:
-            law += f", {', '.join(stroke.others)} hardly more: look at which it was"
-        lines.append(
-            f"stroke {number}: {height:.6g} +- {off:.2g} {_unit(measured)} "
-            f"from {begin:.5g} to {end:.5g} +- {widest:.2g} degrees; {law}"
-        )
+    """Lines of text on each recognised stroke, and on all of them: height, angles and law, with uncertainties."""
+    lines = _told(measured, programme).lines()
     lines.append(f"the motion is within {_in_unit(measured, programme.greatest):.3g} {_unit(measured)} of the points'")
     return [*lines, _hidden(measured, programme)]
 

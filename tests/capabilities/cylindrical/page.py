@@ -1,6 +1,6 @@
 """Tables of keys of docs/cylindrical.md: those of a recipe of a cylindrical cam."""
 
-from camgeo.capabilities.cylindrical.keys import CAM, LIMITS, PART, PROGRAM
+from camgeo.capabilities.cylindrical.keys import CAM, LIMITS, MADE, PART, PROGRAM
 from camgeo.schema.fields import FieldTable
 
 
@@ -17,5 +17,6 @@ TABLES = {
     "cam cylindrical": FieldTable(tuple(field for field in CAM.fields if field.name != "kind")),
     **dict(_below(CAM, "cam cylindrical")),
     "part cylindrical": PART.inner,
+    "made cylindrical": MADE.inner,
     "gcode cylindrical": FieldTable(PROGRAM),  # needs: milling
 }

@@ -11,9 +11,9 @@ from support.measured import disc, points, surfaces
 from camgeo.recipe.recipe import read
 from camgeo.synthesis.design import designed
 from kin.follower.follower import still_follower
+from kin.follower.recognised import Stroke, _fitted, recognised
 from kin.law.sources.laws import NAMES
 from kin.made.point_motion import SurfaceRun, measured_motion
-from kin.made.recognised import Stroke, _fitted, recognised
 
 ROLLER = "kind: roller, radius: 10, offset: 6"
 READING = 0.01

@@ -1,6 +1,6 @@
-"""The motion of a measured cam as a programme: dwells, and strokes each by the law that fits it best.
+"""The motion that a part gives its follower as a programme: dwells, and strokes each by the law that fits it best.
 
-The follower runs on the smoothed metal (`kin.made.point_motion`). Dwells are stretches that rest within a reading;
+Nothing is asked but positions at equal shaft angles (`Moved`). Dwells are stretches that rest within a reading;
 between them, and between turning points, are strokes. Boundaries and levels are fitted together by least squares: first
 each stroke alone, by every law of the catalogue, then all at once by the best ones. What is left is form rather than
 noise, with as many independent values as it changes its sign: its scatter gives the uncertainties. Long waves of the
@@ -10,13 +10,12 @@ metal's form are in part taken for motion, which no scatter shows: `Hidden` has 
 from __future__ import annotations
 
 import math
-from typing import TYPE_CHECKING, NamedTuple
+from typing import TYPE_CHECKING, NamedTuple, Protocol
 
 import numpy as np
 
 from kin.follower.measured import MeasuredMotion
 from kin.law.sources.laws import NAMES, named
-from kin.made.motion import COVERAGE
 from kin.numeric.angles import TURN
 from kin.numeric.feet import equal_steps
 from kin.numeric.records import dataclass, replace
@@ -26,15 +25,68 @@ if TYPE_CHECKING:
 
     from kin.law.contacts import Unit
     from kin.law.normalised import Law
-    from kin.made.point_motion import PointMotion
     from kin.numeric.arrays import Array, Indices
 
+COVERAGE = 2.0  # standard deviations: about 95 % (GUM)
 MOST_WAVES = 4  # a turn, of forms that may be taken for motion: shorter waves stand out of it
 ROUNDS = 25  # of Gauss and Newton
 SETTLED = 1e-9  # of a turn, and of the stroke: a step that changes nothing
 DIFFERENCE = 1e-6  # rad, and of the stroke: of numerical derivatives
 NEARLY = 1.5  # times the least residual: laws that fit no worse are named too
 LEAST_STROKE = 4.0  # readings: the least height of a stroke at a turning point
+
+
+class Moved(Protocol):
+    """A motion of which nothing is known but positions, mm or rad, at equal shaft angles, rad."""
+
+    @property
+    def turn(self) -> Array:
+        """Position at equal shaft angles of a turn."""
+        ...
+
+    @property
+    def position(self) -> Array:
+        """The same at equal shaft angles (k,) of the `span`."""
+        ...
+
+    @property
+    def shaft(self) -> Array:
+        """These shaft angles (k,)."""
+        ...
+
+    @property
+    def span(self) -> float:
+        """Part of the turn, from angle 0 on, by which the motion is told."""
+        ...
+
+    @property
+    def last(self) -> float:
+        """Position at the end of the span."""
+        ...
+
+    @property
+    def closed(self) -> bool:
+        """Whether the span is a whole turn."""
+        ...
+
+    @property
+    def spans(self) -> int:
+        """Most independent values of what is left, in the span."""
+        ...
+
+    @property
+    def sd(self) -> float:
+        """Standard deviation of the position."""
+        ...
+
+    @property
+    def zero_ends(self) -> bool:
+        """Whether a part of a turn begins and ends at 0."""
+        ...
+
+    def alike(self, most: int, /) -> tuple[int, ...]:
+        """Numbers of waves a turn, up to `most`, that motion and a form error of the part share."""
+        ...
 
 
 class Stroke(NamedTuple):
@@ -93,13 +145,13 @@ class Programme:
         """Greatest |residual|, mm or rad."""
         return float(np.abs(self.residual).max())
 
-    def written(self, motion: PointMotion, boundaries: Array, levels: Array) -> Programme:
+    def written(self, motion: Moved, boundaries: Array, levels: Array) -> Programme:
         """The programme with other boundaries (m,), rad, and levels (k,), and its residual from `motion`."""
         residual = motion.position - _model(motion.shaft, boundaries, levels, self.strokes)
         return replace(self, boundaries=boundaries, levels=levels, residual=residual)
 
 
-def recognised(motion: PointMotion, reading: float, unit: Unit) -> Programme | None:
+def recognised(motion: Moved, reading: float, unit: Unit) -> Programme | None:
     """Programme of dwells and strokes that a measured motion follows; None for a motion without strokes.
 
     A dwell is a stretch of at least 10 degrees that stays within `reading`, mm or rad; `unit` is that of the follower's
@@ -121,7 +173,7 @@ def recognised(motion: PointMotion, reading: float, unit: Unit) -> Programme | N
     return _fitted(motion, rough.boundaries, rough.levels, laws)
 
 
-def _places(motion: PointMotion, reading: float, unit: Unit) -> list[tuple[float, float, float]]:
+def _places(motion: Moved, reading: float, unit: Unit) -> list[tuple[float, float, float]]:
     """Dwells, and turning points between them as dwells of no length: begin, end, level; in order.
 
     A part of a turn has its ends among them.
@@ -147,7 +199,7 @@ def _places(motion: PointMotion, reading: float, unit: Unit) -> list[tuple[float
     return sorted(places + turns, key=lambda place: place[0] % TURN)
 
 
-def _rests(motion: PointMotion, reading: float, unit: Unit) -> list[tuple[float, float, float]]:
+def _rests(motion: Moved, reading: float, unit: Unit) -> list[tuple[float, float, float]]:
     """Stretches that rest within a reading: begin, end, level, those that lie in the span of the motion."""
     whole, nothing = motion.turn, np.zeros(len(motion.turn))
     rows = np.stack([whole, nothing, nothing])
@@ -211,7 +263,7 @@ def _model(shaft: Array, boundaries: Array, levels: Array, strokes: Sequence[Str
 
 
 def _by_law(
-    motion: PointMotion, stroke: Stroke, boundaries: Array, levels: Array, places: Sequence[tuple[float, float, float]]
+    motion: Moved, stroke: Stroke, boundaries: Array, levels: Array, places: Sequence[tuple[float, float, float]]
 ) -> Stroke:
     """The stroke with the law of least residual; each law is fitted with free levels, and free ends beside dwells."""
     before, after = places[stroke.low], places[stroke.high]
@@ -261,7 +313,7 @@ def _by_law(
     return stroke._replace(law=order[0], others=others, residual=best)
 
 
-def _fitted(motion: PointMotion, boundaries: Array, levels: Array, strokes: tuple[Stroke, ...]) -> Programme:
+def _fitted(motion: Moved, boundaries: Array, levels: Array, strokes: tuple[Stroke, ...]) -> Programme:
     """Fit boundaries and levels all at once, by Gauss and Newton; the ends of a part of a turn stay where they are."""
     m, stroke_height = len(boundaries), float(np.ptp(levels))
     values = np.concatenate([boundaries, levels])
@@ -311,7 +363,7 @@ def _fitted(motion: PointMotion, boundaries: Array, levels: Array, strokes: tupl
     return Programme(values[:m], values[m:], strokes, (expanded[:m], expanded[m:]), hidden, here)
 
 
-def _hidden(motion: PointMotion, columns: Array, free: Indices, scale: Array, boundaries: int) -> Hidden:
+def _hidden(motion: Moved, columns: Array, free: Indices, scale: Array, boundaries: int) -> Hidden:
     """How much of a form of few waves a turn f unknowns, whose columns are (n, f), take for motion: of the worst one.
 
     `free` (f,) are their indices among all unknowns: as many boundaries as `boundaries` says, then levels. `scale` has

@@ -1,0 +1,166 @@
+# needs: follow
+"""The motion that a drum of unknown origin gives a roller: `camgeo follow --drum`."""
+
+from __future__ import annotations
+
+import math
+from typing import TYPE_CHECKING, Literal
+
+from camgeo.capabilities.cylindrical.followed_recipe import Drawn
+from camgeo.capabilities.follow.extension import OtherInputs
+from camgeo.cli.arguments import decimal, length
+from camgeo.common.errors import CallError
+from camgeo.common.terminal import escaped
+from camgeo.common.units import UNIT_MM
+from kin.cylindrical.follower import Arm
+from kin.cylindrical.running import Asked, run
+from kin.cylindrical.unknown import Placed, UnknownError, read_drum
+from kin.numeric.errors import UnsettledError
+from kin.read.errors import ReadError
+from kin.read.formats import FORMATS, format_of, oversize, suffixes
+
+if TYPE_CHECKING:
+    import argparse
+    from pathlib import Path
+
+KINDS = ("auto", "groove", "rib", "top", "bottom")
+APEX: Literal["axis"] = "axis"
+STEEPEST = 45.0  # degrees, of a cone's half angle
+UNMOVED = 1e-6  # mm of a lower face that lies at 0
+ON_ARM = ("length", "offset", "pivot")
+
+
+def _add_arguments(parser: argparse.ArgumentParser) -> None:
+    text = "a drum: what leads the roller, its end face towards the top or bottom, or auto for what the file shows"
+    parser.add_argument("--drum", choices=KINDS, help=text)
+    text = "where the roller on a drum begins to bear, mm from the drum's axis (default: the floor and 0.5 mm)"
+    parser.add_argument("--from", type=length, dest="bears_from", metavar="R", help=text)
+    text = "where it ends (default: radius of the drum); --arm is its length, y and height of its pivot"
+    parser.add_argument("--to", type=length, dest="bears_to", metavar="R", help=text)
+    text = (
+        "half angle in degrees of a conical roller, or axis; and where it has its radius, mm (default: half way): 5,44"
+    )
+    parser.add_argument("--taper", type=_taper, metavar="DEG[,AT]", help=text)
+    parser.add_argument("--distance", type=length, metavar="D", help="of both rollers' axes about a rib, mm")
+    text = "flank of a groove by which the roller is held, or middle for midway between both (default: lower)"
+    parser.add_argument("--flank", choices=("lower", "upper", "middle"), default="lower", help=text)
+    parser.add_argument(
+        "--axis", choices=("x", "y", "z"), default="z", help="axis of the drum in the file (default: z)"
+    )
+    text = "height over the lower face, mm, of the track of a drum with several, at angle 0"
+    parser.add_argument("--height", type=length, metavar="Z", help=text)
+
+
+def _taper(text: str) -> tuple[float | Literal["axis"], float | None]:
+    import argparse
+
+    angle, _, at = text.partition(",")
+    try:
+        return "axis" if angle == APEX else decimal(angle), decimal(at) if at else None
+    except ValueError:
+        problem = f"an angle in degrees or axis, and perhaps a length in mm, is expected, not {escaped(text)}"
+        raise argparse.ArgumentTypeError(problem) from None
+
+
+def _follow(arguments: argparse.Namespace) -> Drawn:
+    """Motion of a roller on a drum; raises CallError for a wrong call or file, and where it touches nothing."""
+    from camgeo.common.arguments import path_of
+
+    path = path_of("file", arguments.file)
+    roller = arguments.roller
+    if roller is None or not roller > 0.0:
+        raise CallError("a drum is followed by a roller: give --roller with its radius")
+    of_discs = (arguments.flat, arguments.yoke, arguments.track != "external", arguments.across, arguments.mirror)
+    if any(of_discs) or any(given is not None for given in (arguments.shoe, arguments.gap, arguments.body)):
+        raise CallError("--flat, --shoe, --yoke, --track, --across, --mirror, --gap and --body are not of drums")
+    _demand_solid(path)
+    record = format_of(path)
+    if record.units and arguments.units is not None:
+        raise CallError(f"{escaped(str(path))}: the file states its unit itself: leave units out")
+    if len(arguments.at) != len(("x", "y")):
+        raise CallError("at is the place of the drum's axis in the file: two lengths in mm")
+    asked = _asked(arguments)
+    placed = Placed(arguments.axis, arguments.at, math.radians(arguments.turn), mirrored=arguments.rotation == "ccw")
+    name = escaped(str(path))
+    try:
+        drum = read_drum(path, placed, None if arguments.units is None else UNIT_MM[arguments.units])
+        moved = run(drum, asked)
+    except ReadError as error:
+        raise CallError(f"{name}: {error.message}") from error
+    except UnknownError as error:
+        raise CallError(f"{name}: {error}{f'; {error.remedy}' if error.remedy else ''}") from error
+    except (UnsettledError, ValueError) as error:
+        raise CallError(f"{name}: {error}") from error
+    except OSError as error:
+        raise CallError(f"{name}: {error.strerror or error}") from error
+    unjudged = ""
+    if placed._replace(mirrored=False) != Placed() or abs(drum.below) > UNMOVED:
+        unjudged = "a page judges a file as it lies, its lower face at z = 0: leave axis, at and turn out, or page"
+    said = arguments.flank, arguments.rotation, arguments.reading, arguments.turn, arguments.units
+    return Drawn(path, drum, moved, *said, unjudged)
+
+
+def _demand_solid(path: Path) -> None:
+    """Raise CallError for a file that is no solid, or too large."""
+    kinds = [suffix for suffix, kind in suffixes().items() if FORMATS[kind].contents == "solid"]
+    if path.suffix.lower() not in kinds:
+        raise CallError(f"{escaped(str(path))}: a drum is followed in a solid: give one of {', '.join(kinds)}")
+    try:
+        large = oversize(path, format_of(path).name)
+    except OSError as error:
+        raise CallError(f"{escaped(str(path))}: {error.strerror or error}") from error
+    if large:
+        raise CallError(f"{escaped(str(path))}: {large}")
+
+
+def _asked(arguments: argparse.Namespace) -> Asked:
+    """The roller and its guide; raises CallError for what does not go together."""
+    inner, outer, (taper, at) = arguments.bears_from, arguments.bears_to, arguments.taper or (0.0, None)
+    for name, value in (("from", inner), ("to", outer), ("distance", arguments.distance), ("taper's place", at)):
+        if value is not None and not value > 0.0:
+            raise CallError(f"{name} is a length above 0, not {value:.6g}")
+    if not arguments.reading > 0.0:
+        raise CallError(f"a reading is a length above 0, not {arguments.reading:.6g}")
+    if inner is not None and outer is not None and not inner < outer:
+        raise CallError(f"the roller bears from {inner:.6g} to {outer:.6g} mm: give from below to")
+    arm = None
+    if arguments.arm is not None:
+        if len(arguments.arm) != len(ON_ARM) or not arguments.arm[0] > 0.0:
+            raise CallError("the arm of a drum has its length, and y and height of its pivot, mm: --arm 90,88.6,50")
+        along, offset, pivot = arguments.arm
+        arm = Arm(along, offset, pivot, -1 if arguments.leading else 1)
+        if arguments.offset:
+            raise CallError("an arm has its own offset: leave --offset out")
+    elif arguments.leading:
+        raise CallError("only an arm leads: give --arm, or leave --leading out")
+    if taper != APEX and arguments.taper is not None and not 0.0 < taper < STEEPEST:
+        raise CallError(f"a taper lies above 0 and below {STEEPEST:g} degrees")
+    return Asked(
+        arguments.roller,
+        None if arguments.drum == "auto" else arguments.drum,
+        inner,
+        outer,
+        arguments.offset,
+        taper if taper == APEX else math.radians(taper),
+        at,
+        arm,
+        arguments.height,
+        arguments.distance,
+    )
+
+
+ANSWERS = OtherInputs(
+    option="drum",
+    add_arguments=_add_arguments,
+    follow=_follow,
+    alone={
+        "--from": ("bears_from", None),
+        "--to": ("bears_to", None),
+        "--taper": ("taper", None),
+        "--distance": ("distance", None),
+        "--flank": ("flank", "lower"),
+        "--axis": ("axis", "z"),
+        "--height": ("height", None),
+    },
+    solids="follow a drum by --drum auto and --roller with its radius",
+)

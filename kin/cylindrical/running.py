@@ -1,0 +1,435 @@
+"""The motion that a drum of unknown origin gives a roller: set down on its lower flank and up against its upper one.
+
+A line along the axis, half way along the roller, shows where there is metal: between two stretches of it lies a groove,
+a stretch between two rollers is a rib, and the outermost end may be that of an end cam. Followed round the turn these
+are tracks. A roller that stands on the line of a flank at that radius tells which metal is below its axis and which is
+above; then it is set down on all facets of its side, over its own length, at each angle: a place by contact, of the
+file as it is, with no intent.
+"""
+
+from __future__ import annotations
+
+import math
+from typing import TYPE_CHECKING, Literal, NamedTuple
+
+import numpy as np
+
+from kin.cylindrical.contact import set_down
+from kin.cylindrical.follower import DrumFollower
+from kin.cylindrical.frame import On, Rates, pressure_jet
+from kin.cylindrical.gauge import gauges_of
+from kin.cylindrical.intent import DrumIntent, End, Groove, Rib
+from kin.cylindrical.lifts import Lifts
+from kin.cylindrical.unknown import UnknownError
+from kin.law.piecewise import Piecewise
+from kin.law.segment import Constant
+from kin.numeric.angles import TURN, degrees
+from kin.numeric.elementary import Jet
+from kin.numeric.feet import equal_steps
+from kin.numeric.records import dataclass, replace
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+    from kin.cylindrical.follower import Arm
+    from kin.cylindrical.guide import Guide
+    from kin.cylindrical.intent import Track
+    from kin.cylindrical.roller import Gauge
+    from kin.cylindrical.unknown import Column, Drum
+    from kin.law.contacts import Side
+    from kin.numeric.arrays import Array, Indices, Mask
+
+Kind = Literal["groove", "rib", "top", "bottom"]
+
+LOOKS = 2880  # lines along the axis, over a turn
+STEPS = 720  # angles at which the roller is set down
+GAP = 0.5  # mm that a roller stands off the floor where it is not said where it begins
+BENEATH = 1e-3  # of the radius of the blank, by which lines lie within it where no floor is known yet
+ROUNDS = 4  # of the angle at which a roller on an arm passes over a point
+STILL = 4.0  # times the facets' sag and rounding: an end that varies by less is no track
+LEANING = 0.2  # of an arm's length, by which its swing may move the roller aside where nothing is known of it yet
+CORNERS = 2.0  # times the facets' sag: their corners may be as far off again, which a file does not show
+MOST_REACH = 1.4  # rad, beyond which a line about the axis is not touched
+ASIDE = 0.02  # of the roller's radius, by which a guess may put it aside
+SPREAD = 3  # steps to both sides, over which a slope is taken
+
+
+class Asked(NamedTuple):
+    """What is known of the roller: lengths mm.
+
+    `inner` and `outer` are where it bears along its axis, None for the floor and GAP, and for the blank. A cone by
+    `taper`, rad, or "axis" for an apex on the drum's axis, has its radius `at` a place, None for half way. `height` is
+    that of the track at angle 0, where there are several; `distance` that of a rib's two rollers.
+    """
+
+    radius: float
+    kind: Kind | None = None
+    inner: float | None = None
+    outer: float | None = None
+    offset: float = 0.0
+    taper: float | Literal["axis"] = 0.0
+    at: float | None = None
+    arm: Arm | None = None
+    height: float | None = None
+    distance: float | None = None
+
+
+@dataclass(frozen=True, eq=False)
+class Run:
+    """The motion of a roller on an unknown drum, at equal steps of the turn from 0.
+
+    kind      of the track
+    follower  the roller, where it bears, its guide; its law is none
+    floor     radius down to which flanks reach, mm
+    lower     position (n,) of the roller that is set down on the lower flank, mm over the lower face, or the arm's
+              angle, rad, over level; nan without such a flank
+    upper     the same, up against the upper flank
+    lean      greatest pressure angle, rad, about, at the roller's inner end
+    error     by how much facets may put a position wrong, about, in its unit
+    distance  of the axes of a rib's two rollers, mm, None of others
+    """
+
+    kind: Kind
+    follower: DrumFollower
+    floor: float
+    lower: Array
+    upper: Array
+    lean: Array
+    error: float
+    distance: float | None = None
+
+
+class _Track(NamedTuple):
+    """A track by the heights of its lower and upper flank, mm, at lines along the axis (n,); nan without a flank.
+
+    The lower flank is that on which a roller stands.
+    """
+
+    kind: Kind
+    lower: Array
+    upper: Array
+
+
+def run(drum: Drum, asked: Asked) -> Run:
+    """Let a roller run on a drum over the turn.
+
+    Raises UnknownError where no track is found, or several; where there is no floor, and where the roller touches
+    nothing or metal stands in its way.
+    """
+    outer = drum.radius if asked.outer is None else asked.outer
+    if not outer <= drum.radius * (1.0 + BENEATH) or (
+        asked.inner is not None and not asked.inner < (1.0 - BENEATH) * outer
+    ):
+        begins = "" if asked.inner is None else f"from {asked.inner:.6g} "
+        raise UnknownError(
+            f"the blank is at {drum.radius:.6g} mm, and the roller bears {begins}to {outer:.6g} mm",
+            "give from and to between floor and blank",
+        )
+    probe = 0.5 * (asked.inner + outer) if asked.inner is not None else min(outer, (1.0 - BENEATH) * drum.radius)
+    track = _track(drum, asked, probe)
+    floor = _floor(drum, track, asked, probe)
+    inner = floor + GAP if asked.inner is None else asked.inner
+    if not floor < inner < outer:
+        raise UnknownError(
+            f"the floor is at {floor:.6g} mm and the blank at {drum.radius:.6g}, and the roller bears from "
+            f"{inner:.6g} to {outer:.6g} mm",
+            "give from and to between floor and blank",
+        )
+    if asked.inner is None:
+        probe = 0.5 * (inner + outer)
+        track = _track(drum, asked._replace(kind=track.kind), probe)
+    distance = asked.distance
+    if track.kind == "rib" and distance is None:
+        if asked.arm is not None:
+            raise UnknownError("two rollers on one arm have a distance of their own", "give distance")
+        distance = 0.0
+    middle = 0.5 * (inner + outer) if asked.at is None else asked.at
+    taper = math.atan2(asked.radius, middle) if asked.taper == "axis" else asked.taper
+    follower = DrumFollower(
+        asked.radius,
+        inner,
+        outer,
+        0.0 if asked.arm is None else asked.arm.pivot,
+        Piecewise(np.array([0.0, TURN]), (Constant(0.0),)),
+        asked.offset,
+        taper,
+        middle if taper else None,
+        asked.arm,
+    )
+    depth = drum.radius - floor
+    gauges = gauges_of(DrumIntent(follower, _flanks(track.kind, depth, distance or 0.0), drum.radius, drum.length))
+    theta = equal_steps(STEPS)
+    found = {-1: np.full(STEPS, np.nan), 1: np.full(STEPS, np.nan)}
+    steepest, leans = 0.0, np.zeros(STEPS)
+    for gauge in gauges:
+        line = track.lower if gauge.side < 0 else track.upper
+        beside = gauge.level - follower.level
+        guide = follower.guide(beside)
+        size = asked.radius + (probe - (follower.at or 0.0)) * follower.growth
+        guess = _guessed(gauge, guide, line, (probe, size, _aside(follower)))
+        found[gauge.side] = _placed(drum, gauge, guide, guess, theta)
+        lean = _leaning(follower, beside, gauge.side, found[gauge.side])
+        leans = np.where(np.abs(lean) > np.abs(leans), lean, leans)
+        steepest = max(steepest, float(np.abs(lean).max()))
+    lower, upper = found[-1], found[1]
+    if track.kind == "rib" and asked.distance is None:
+        distance = float((lower - upper).mean())
+        lower, upper = lower - 0.5 * distance, upper + 0.5 * distance
+    lever = gauges[0].lever
+    error = (CORNERS * drum.sag + math.sqrt(3.0) * drum.rounding) / max(math.cos(steepest), 0.1) / lever
+    return Run(track.kind, follower, floor, lower, upper, leans, error, distance)
+
+
+def _flanks(kind: Kind, depth: float, distance: float) -> Track:
+    """What is cut: flanks of a track, by its depth and the distance of two rollers, mm."""
+    if kind == "groove":
+        return Groove(depth)
+    return Rib(depth, distance) if kind == "rib" else End(kind, depth)
+
+
+# --- tracks -----------------------------------------------------------------------------------------------------------
+
+
+def _track(drum: Drum, asked: Asked, radius: float) -> _Track:
+    """The track at a radius, mm, of the kind that is asked for, or of that which the drum shows."""
+    columns = drum.columns(radius, _looks())
+    for k, column in enumerate(columns):
+        ways = np.where(np.arange(len(column.sense)) % 2 == 0, -1.0, 1.0)
+        if not len(column.z) or len(column.z) % 2 or (column.sense != ways).any():
+            raise UnknownError(
+                f"at a radius of {radius:.6g} mm and a polar angle of {degrees(float(_looks()[k])):.6g} degrees "
+                f"the solid has no metal, or no inside: no drum, or a damaged file"
+            )
+    still = STILL * (drum.sag + drum.rounding)
+    voids, metals = _stretches(columns, 1), _stretches(columns, 0)
+    tracks: dict[Kind, list[_Track]] = {"groove": [], "rib": [], "top": [], "bottom": []}
+    tracks["groove"] = [_Track("groove", low, high) for low, high in voids]
+    # upper flank of the roller below a rib, lower flank of that above it
+    both = [(low, high) for low, high in metals if np.ptp(low) > still and np.ptp(high) > still]
+    tracks["rib"] = [_Track("rib", high, low) for low, high in both]
+    none = np.full(len(columns), np.nan)
+    last, first = np.array([column.z[-1] for column in columns]), np.array([column.z[0] for column in columns])
+    if np.ptp(last) > still:
+        tracks["top"] = [_Track("top", last, none)]
+    if np.ptp(first) > still:
+        tracks["bottom"] = [_Track("bottom", none, first)]
+    kind = asked.kind
+    if kind is None:
+        inner: tuple[Kind, ...] = ("groove", "rib")
+        ends: tuple[Kind, ...] = ("top", "bottom")
+        shown = [name for name in inner if tracks[name]] or [name for name in ends if tracks[name]]
+        if not shown:
+            raise UnknownError(f"no groove, rib or end face that rises and falls is found at {radius:.6g} mm")
+        if len(shown) > 1:
+            raise UnknownError(f"it may be of kind {' or '.join(shown)}", "give drum with one of them")
+        kind = shown[0]
+    chosen = tracks[kind]
+    if asked.height is not None and chosen:
+        chosen = [min(chosen, key=lambda track: abs(_level(track) - (asked.height or 0.0)))]
+    if not chosen:
+        raise UnknownError(
+            f"no {_NOUNS[kind]} that goes round the turn and closes is found at a radius of {radius:.6g} mm",
+            "give another drum, or from and to where its flanks are",
+        )
+    if len(chosen) > 1:
+        heights = " and ".join(f"{_level(track):.6g}" for track in chosen)
+        raise UnknownError(f"there are {len(chosen)} tracks, at heights of {heights} mm at angle 0", "give height")
+    return chosen[0]
+
+
+_NOUNS: dict[Kind, str] = {
+    "groove": "groove",
+    "rib": "rib",
+    "top": "end face towards the top",
+    "bottom": "end face towards the bottom",
+}
+
+
+def _looks() -> Array:
+    """Polar angles of lines along the axis: half a step off 0, so that they meet no regular edges."""
+    return equal_steps(LOOKS) + 0.5 * TURN / LOOKS
+
+
+def _level(track: _Track) -> float:
+    """Height of a track at angle 0, mm."""
+    sides = [line[0] for line in (track.lower, track.upper) if np.isfinite(line[0])]
+    return float(np.mean(sides))
+
+
+def _stretches(columns: Sequence[Column], first: Literal[0, 1]) -> list[tuple[Array, Array]]:
+    """Lower and upper ends (n,) of stretches that go round the turn and close: voids (first 1), or metal (0).
+
+    From line to line a stretch goes on in the one that it overlaps, and ends where there is none or are several.
+    """
+    each = [np.stack([z[first : len(z) - 1 : 2], z[first + 1 : len(z) : 2]], axis=1) for z in (c.z for c in columns)]
+    found = []
+    for start in each[0]:
+        rows = [start]
+        for following in [*each[1:], each[0]]:
+            low, high = rows[-1]
+            over = following[(following[:, 0] < high) & (following[:, 1] > low)]
+            if len(over) != 1:
+                break
+            rows.append(over[0])
+        else:
+            if (rows[-1] == start).all():
+                track = np.array(rows[:-1])
+                found.append((track[:, 0], track[:, 1]))
+    return found
+
+
+def _floor(drum: Drum, track: _Track, asked: Asked, radius: float) -> float:
+    """Radius, mm, of the floor: the farthest that is met inwards from where the roller runs.
+
+    A ring of an end cam that stands over what lies within it has its own floor, by where the roller begins.
+    """
+    theta, (kind, lower, upper) = _looks(), track
+    if kind in {"top", "bottom"} and asked.inner is not None:
+        return asked.inner - GAP
+    # the axis of a roller on the flank is about so far off it
+    rows = [0.5 * (lower + upper)] if kind == "groove" else [lower + asked.radius, upper - asked.radius]
+    floor = max(drum.floor(theta, z) for z in rows if np.isfinite(z).all())
+    if math.isnan(floor) or floor >= radius:
+        raise UnknownError(f"no floor is found beside the {_NOUNS[kind]} at a radius of {radius:.6g} mm", "give from")
+    return floor
+
+
+# --- the roller -------------------------------------------------------------------------------------------------------
+
+
+class _Near(Lifts):
+    """Positions by a guess at lines along the axis, in place of those of a law."""
+
+    guess: Array
+
+    @staticmethod
+    def of(lifts: Lifts, guess: Array) -> _Near:
+        """A guess (n,) in place of a law."""
+        near = _Near(lifts.law)
+        object.__setattr__(near, "guess", guess)
+        return near
+
+    def at(self, theta: Array) -> tuple[Array, Array, Array]:
+        """The guess (n,) at angles (n,), rad; no slope and no bend."""
+        still = np.zeros_like(theta)
+        return _at(self.guess, theta), still, still
+
+
+def _guessed(gauge: Gauge, guide: Guide, line: Array, roller: tuple[float, float, float]) -> Array:
+    """Position (n,), at lines along the axis, of a roller on the line of a flank: nearly that on all of the flank.
+
+    `roller` has the radius of the line, the roller's own there, and how far aside its axis may stand, mm. Raises
+    UnknownError where it touches none of the line.
+    """
+    radius, size, aside = roller
+    step = TURN / len(line)
+    most = int(min(math.asin(min(1.0, (size + aside) / radius)), MOST_REACH) / step) + 1
+    best = np.full(len(line), -np.inf)
+    still, sizes = np.zeros(len(line)), np.full(len(line), size)
+    for k in range(-most, most + 1):
+        y = np.full(len(line), radius * math.sin(k * step))
+        best = np.fmax(best, guide.touching((y, np.roll(line, -k)), still, sizes, gauge.side).gives)
+    if not np.isfinite(best).all():
+        at = degrees(float(_looks()[int(np.argmin(np.isfinite(best)))]))
+        raise UnknownError(f"the roller touches nothing of the {gauge.name} flank at about {at:.6g} degrees")
+    return np.asarray(-gauge.side * best / guide.lever)
+
+
+def _aside(follower: DrumFollower) -> float:
+    """About how far from a radius the roller's axis comes, mm."""
+    if follower.arm is None:
+        return abs(follower.offset)
+    return abs(follower.arm.offset - follower.arm.side * follower.arm.length) + LEANING * follower.arm.length
+
+
+def _placed(drum: Drum, gauge: Gauge, guide: Guide, guess: Array, theta: Array) -> Array:
+    """Positions (n,), at angles, rad, of a roller that is set down on the metal of its side.
+
+    Metal is that below its axis as it stands by a `guess` at lines along the axis. Raises UnknownError where that
+    cannot be told, and where the roller touches nothing.
+    """
+    metal = _metal(drum, gauge, guide, guess)
+    corners, phi = drum.facets[metal], drum.phi[metal]
+    reach = math.asin(min(1.0, (gauge.largest + _aside_of(guide, guess)) / gauge.inner))
+    kept, at = [], []
+    low, high = phi.min(axis=1) - reach, phi.max(axis=1) + reach
+    order = np.argsort(low)
+    low, high, corners = low[order], high[order], corners[order]
+    widest = float((high - low).max(initial=0.0))
+    for angle in theta:
+        windows = []
+        for turn in (-TURN, 0.0, TURN):
+            first, last = np.searchsorted(low, [angle + turn - widest, angle + turn])
+            windows.append(first + np.flatnonzero(high[first:last] >= angle + turn))
+        own = np.unique(np.concatenate(windows))
+        own = own[_may_touch(gauge, guide, corners[own], float(angle), _at(guess, angle))]
+        kept.append(own)
+        at.append(np.full(len(own), angle))
+    chosen, angles = np.concatenate(kept), np.concatenate(at)
+    near = replace(gauge, lifts=_Near.of(gauge.lifts, guess))
+    gives = set_down(near, corners[chosen], (angles, angles), theta)
+    if not np.isfinite(gives).all():
+        free = degrees(float(theta[int(np.argmin(np.isfinite(gives)))]))
+        raise UnknownError(f"the roller touches nothing of the {gauge.name} flank at {free:.6g} degrees")
+    return np.asarray(_at(guess, theta) - gauge.side * gives / guide.lever)
+
+
+def _at(guess: Array, angle: Array | float) -> Array:
+    """Guess at an angle, rad."""
+    return np.asarray(np.interp(angle, _looks(), guess, period=TURN))
+
+
+def _aside_of(guide: Guide, guess: Array) -> float:
+    """Greatest distance of the roller's axis from a radius, mm."""
+    still = np.zeros_like(guess)
+    return float(np.abs(guide.axis(guess, still, still).y).max())
+
+
+def _metal(drum: Drum, gauge: Gauge, guide: Guide, guess: Array) -> Indices:
+    """Numbers of the facets that lie on the metal's side of the roller's axis, along its length."""
+    within = np.flatnonzero(drum.r.max(axis=1) >= gauge.inner)
+    phi, r, z = drum.phi[within].ravel(), drum.r[within].ravel(), drum.facets[within][..., 2].ravel()
+    theta = phi
+    for _ in range(ROUNDS):
+        position = _at(guess, theta)
+        axis = guide.axis(position, np.zeros_like(position), np.zeros_like(position))
+        theta = phi - np.arcsin(np.clip(axis.y / np.maximum(r, 1e-300), -1.0, 1.0))
+    away = (gauge.side * (axis.z - z) > 0.0).reshape(-1, 3)
+    across = away.any(axis=1) & ~away.all(axis=1)
+    if across.any():
+        place = drum.facets[within[across][0]].mean(axis=0)
+        angle = degrees(math.atan2(place[1], place[0]) % TURN)
+        raise UnknownError(
+            f"metal stands in the roller's way at about {angle:.6g} degrees, {np.hypot(*place[:2]):.6g} mm out",
+            "give from and to within the flanks, or a smaller roller",
+        )
+    return within[~away.any(axis=1)]
+
+
+def _may_touch(gauge: Gauge, guide: Guide, corners: Array, angle: float, guess: Array) -> Mask:
+    """Which facets (t, 3, 3) may hold the roller at an angle: none of the others reaches as high as one corner does."""
+    sine, cosine, still = math.sin(angle), math.cos(angle), np.zeros(3 * len(corners))
+    points = list(corners.reshape(-1, 3).T)
+    held = gauge.held(points, still + guess, still + sine, still + cosine)
+    gives, along = held.gives.reshape(-1, 3), held.along.reshape(-1, 3)
+    own = np.isfinite(gives)
+    inside = own & (along >= gauge.inner) & (along <= gauge.outer)
+    most = float(gives[inside].max(initial=-np.inf))
+    y = (points[1] * cosine - points[0] * sine - float(guide.axis(guess, 0.0 * guess, 0.0 * guess).y)).reshape(-1, 3)
+    # F bends along an edge by no more than at its end that is farthest aside
+    size = gauge.smallest
+    aside = np.minimum((np.abs(y).max(axis=1) + ASIDE * size) / size, 1.0)
+    with np.errstate(divide="ignore", invalid="ignore"):
+        more = np.ptp(y, axis=1) ** 2 / (8.0 * size * (1.0 - aside**2) ** 1.5)
+        bound = np.where(own.all(axis=1) & (aside < 1.0), np.max(gives, axis=1) + more, np.inf)
+    wide = gauge.largest * (1.0 + ASIDE)
+    there = (y.min(axis=1) <= wide) & (y.max(axis=1) >= -wide)
+    there &= (along.max(axis=1) >= gauge.inner) & (along.min(axis=1) <= gauge.outer)
+    return np.asarray(there & ~(bound < most))
+
+
+def _leaning(follower: DrumFollower, beside: float, side: Side, position: Array) -> Array:
+    """Pressure angles (n,), rad, about, at the roller's inner end, by the differences of positions at equal steps."""
+    slope = (np.roll(position, -SPREAD) - np.roll(position, SPREAD)) * (len(position) / (2.0 * SPREAD * TURN))
+    rows = Rates(*(Jet(row[None]) for row in (position, slope, np.zeros_like(slope))))
+    return np.asarray(pressure_jet(follower, rows, follower.inner, On(side, beside=beside)).c[0])

@@ -1,0 +1,248 @@
+# needs: made
+"""Points measured on the flanks of a drum, by `camgeo verify`.
+
+Holds: camgeo.capabilities.cylindrical.made_points, kin.cylindrical.made, kin.cylindrical.inspected.
+"""
+
+from __future__ import annotations
+
+import math
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+import pytest
+from capabilities.cylindrical.made_drums import GROOVE, RIB, TOP, changed
+
+import camgeo
+from camgeo.cli.main import main
+from kin.cylindrical.inspected import read_flank_points
+from kin.read.errors import ReadError
+
+if TYPE_CHECKING:
+    from pathlib import Path
+
+PLAY = changed(GROOVE, ("{depth: 12.5}", "{depth: 12.5, clearance: 0.03}"), ("[stl]", "[{csv: {as: flank, step: 1}}]"))
+ASKED = f"made: {{profile: 0.03}}\nverify: {{motion_error: 0.01}}\n{PLAY}"
+
+
+class Flanks:
+    """A recipe, and the places and normals of its inspection table."""
+
+    def __init__(self, text: str, folder: Path) -> None:
+        self.folder, self.recipe = folder, folder / "drum.yaml"
+        self.recipe.write_text(text, encoding="utf-8")
+        self.table = camgeo.export(self.recipe, folder).path / "drum.csv"
+        rows = np.genfromtxt(self.table, delimiter=",", names=True)
+        places, normals, self.shaft, self.names, self.r = [], [], [], [], []
+        for name in ("lower", "upper"):
+            if f"{name}_r_mm" not in (rows.dtype.names or ()):
+                continue
+            r, phi = rows[f"{name}_r_mm"], np.radians(rows[f"{name}_phi_deg"])
+            places.append(np.stack([r * np.cos(phi), r * np.sin(phi), rows[f"{name}_z_mm"]], axis=-1))
+            normals.append(np.stack([rows[f"{name}_n{axis}"] for axis in "xyz"], axis=-1))
+            self.names += [name] * len(r)
+            self.shaft += rows["shaft_deg"].tolist()
+        self.places, self.normals = np.concatenate(places), np.concatenate(normals)
+
+    def written(self, places: np.ndarray, heading: str = "x_mm,y_mm,z_mm,flank") -> Path:
+        """A file of points."""
+        path = self.folder / "points.csv"
+        lines = [heading]
+        for row, name in zip(places.tolist(), self.names, strict=True):
+            cells = [f"{value:.9f}" for value in row] + ([name] if "flank" in heading else [])
+            lines.append(",".join(cells))
+        path.write_text("\n".join([*lines, ""]), encoding="utf-8")
+        return path
+
+    def verified(self, path: Path, **options: Any) -> Any:
+        """The report on a file."""
+        return camgeo.verify(self.recipe, path, **options)
+
+
+@pytest.fixture(scope="module")
+def drum(tmp_path_factory: pytest.TempPathFactory) -> Flanks:
+    """A drum with a groove of 0.03 mm clearance."""
+    return Flanks(ASKED, tmp_path_factory.mktemp("made"))
+
+
+@pytest.mark.parametrize("text", [PLAY, RIB, TOP], ids=["groove", "rib", "top"])
+def test_its_own_inspection_table_is_right(text: str, tmp_path: Path) -> None:
+    own = Flanks(changed(text, ("[stl]", "[{csv: {as: flank, step: 2}}]")) if "[stl]" in text else text, tmp_path)
+    made = own.verified(own.table)["made"]
+    assert max(abs(flank[end]) for flank in made["flanks"] for end in ("least", "most")) < 2e-8
+    assert max(abs(ring["worst"]) for ring in made["rings"]) < 2e-8
+    assert {ring["flank"] for ring in made["rings"]} == set(own.names)
+
+
+def test_a_cone_on_an_arm_in_inches(tmp_path: Path) -> None:
+    """Of a drum that turns the other way; 0.0004 in too large all round is what each point is off."""
+    text = changed(
+        GROOVE,
+        ("from: 38", "from: 38, taper: 3, at: 44, arm: {length: 90, offset: 89.5, pivot: 46}"),
+        ("pitch_height: 20", "pitch_height: 33.5"),
+        ("[stl]", "[{csv: {as: flank, step: 2}}]"),
+        ("rise: 40", "rise: 16"),
+        ("return: 40", "return: 16"),
+    )
+    own = Flanks(f"rotation: ccw\n{text}", tmp_path)
+    assert max(abs(flank["worst"]) for flank in own.verified(own.table)["made"]["flanks"]) < 2e-8
+    large = own.written((own.places + 0.01016 * own.normals) / 25.4, "x_in,y_in,z_in")
+    report = own.verified(large)["made"]
+    for flank in report["flanks"]:
+        assert [flank["least"], flank["most"]] == pytest.approx([0.01016, 0.01016], abs=2e-5)
+    # in the dwell at the top the arm stands aslant by psi, and the flank is level: e/(l cos psi)
+    ring = next(each for each in report["rings"] if each["flank"] == "lower")
+    assert ring["unit"] == "deg"
+    assert 0.01016 / 90.0 < math.radians(ring["mean"]) < 0.01016 / 90.0 * 1.2
+
+
+def test_metal_too_large_with_a_burr(drum: Flanks) -> None:
+    """5 um all round lift the roller by 5 um/cos a; a burr of 20 um fails the profile and is left out of the motion."""
+    e = np.full(len(drum.places), 0.005)
+    burr = 3 * 100 + 1
+    e[burr] += 0.020
+    report = drum.verified(drum.written(drum.places + e[:, None] * drum.normals), probe_error=0.001)
+    made = report["made"]
+    lower, upper = made["flanks"]
+    assert (lower["worst"], lower["line"]) == (pytest.approx(0.025, abs=1e-6), burr + 2)
+    assert (upper["least"], upper["most"]) == (pytest.approx(0.005, abs=1e-6),) * 2
+    verdicts = made["verdicts"]
+    assert (verdicts["made-profile lower"], verdicts["made-profile upper"]) == ("failed", "ok")
+    assert not report.ok
+    outer = next(ring for ring in made["rings"] if ring["flank"] == "lower" and burr + 2 in ring["outliers"])
+    assert outer["outliers"] == [burr + 2]
+    inner = made["rings"][0]
+    steepest = math.degrees(math.atan(40.0 * 2.0 / math.radians(120.0) / 38.0))
+    assert inner["worst"] == pytest.approx(0.005 / math.cos(math.radians(steepest)), abs=1e-5)
+    assert made["rings"][-1]["worst"] < 0.0  # above the roller metal pushes it down
+    # both flanks take the play away: 0.03 - 2 times 0.005 in a dwell
+    assert made["play"]["least"] == pytest.approx(0.02, abs=1e-5)
+    told = {check.name: check.detail for check in report.checks if check.name.startswith("made-")}
+    assert "720 points, U = 0.001 mm of a point" not in told["made-motion"]
+    assert "U = 0.001 mm of a point" in told["made-motion"]
+    assert "mm alone" in told["made-motion"]
+
+
+def test_shifted_along_its_axis(drum: Flanks) -> None:
+    path = drum.written(drum.places + np.array([0.0, 0.0, 0.02]))
+    made = drum.verified(path)["made"]
+    assert all(ring["mean"] == pytest.approx(0.02, abs=1e-5) for ring in made["rings"])
+    assert made["verdicts"]["made-profile lower"] == "failed"
+    placed = drum.verified(path, align="height")["made"]
+    assert placed["placing"]["shifted along z"]["value"] == pytest.approx(0.02, abs=1e-7)
+    assert max(abs(flank["worst"]) for flank in placed["flanks"]) < 1e-6
+    assert "turned about z" not in placed["placing"]
+
+
+def test_turned(drum: Flanks) -> None:
+    """0.1 degrees counter-clockwise; the motion is late by as much, which moves it by S' at the steepest place."""
+    angle = math.radians(0.1)
+    turn = np.array([[math.cos(angle), -math.sin(angle), 0], [math.sin(angle), math.cos(angle), 0], [0, 0, 1]])
+    path = drum.written(drum.places @ turn.T)
+    made = drum.verified(path)["made"]
+    steepest = 40.0 * 2.0 / math.radians(120.0)
+    assert abs(made["rings"][0]["worst"]) == pytest.approx(angle * steepest, rel=0.02)
+    assert made["verdicts"]["made-profile upper"] == "failed"
+    assert not any(ring["outliers"] for ring in made["rings"])
+    placed = drum.verified(path, align="rotation")["made"]
+    assert placed["placing"]["turned about z"]["value"] == pytest.approx(0.1, abs=1e-6)
+    assert max(abs(flank["worst"]) for flank in placed["flanks"]) < 1e-6
+    every = drum.verified(path, align="best-fit")["made"]["placing"]
+    assert every["turned about z"]["value"] == pytest.approx(0.1, abs=1e-5)
+    assert abs(every["tilted about x"]["value"]) < 1e-5
+
+
+def test_a_tilted_drum_turned_the_other_way(tmp_path: Path) -> None:
+    """Placing is told in the axes of the file."""
+    own = Flanks(f"rotation: ccw\n{PLAY}", tmp_path)
+    a = math.radians(0.05)
+    tilt = np.array([[1, 0, 0], [0, math.cos(a), -math.sin(a)], [0, math.sin(a), math.cos(a)]])
+    path = own.written(own.places @ tilt.T + [0.03, -0.02, 0.0])
+    placing = own.verified(path, align="best-fit")["made"]["placing"]
+    assert placing["tilted about x"]["value"] == pytest.approx(0.05, abs=1e-4)
+    assert placing["shifted along x"]["value"] == pytest.approx(0.03, abs=2e-4)
+    assert placing["shifted along y"]["value"] == pytest.approx(-0.02, abs=2e-4)
+
+
+@pytest.mark.parametrize(("lift", "told"), [("40.05", "failed"), ("36", None)])
+def test_a_flank_of_another_lift(lift: str, told: str | None, drum: Flanks, tmp_path: Path) -> None:
+    other = Flanks(PLAY.replace("rise: 40", f"rise: {lift}").replace("return: 40", f"return: {lift}"), tmp_path)
+    if told is None:
+        with pytest.raises(camgeo.CallError, match="these points are of another drum: one of ten is"):
+            drum.verified(other.table)
+        return
+    made = drum.verified(other.table)["made"]
+    assert set(made["verdicts"].values()) == {told}
+    assert made["rings"][0]["worst"] == pytest.approx(0.05, abs=5e-4)
+
+
+def test_noise_has_an_uncertainty(drum: Flanks) -> None:
+    """Of random errors of 2 um the smoothed motion shows less, and its uncertainty covers nearly all of it."""
+    noise = np.random.default_rng(1).normal(0.0, 0.002, len(drum.places))
+    made = drum.verified(drum.written(drum.places + noise[:, None] * drum.normals), probe_error=0.004)["made"]
+    for ring in made["rings"]:
+        assert ring["noise"] == pytest.approx(0.002, rel=0.15)
+        assert abs(ring["worst"]) < 2.5 * ring["uncertainty"] < 0.01
+    # 0.03 wide, and the farthest point 7 um off with 4: neither is certain of a narrower zone
+    text = ASKED.replace("profile: 0.03", "profile: 0.017")
+    drum.recipe.with_name("narrow.yaml").write_text(text, encoding="utf-8")
+    report = camgeo.verify(drum.recipe.with_name("narrow.yaml"), drum.folder / "points.csv", probe_error=0.004)
+    assert "not proved" in report["made"]["verdicts"].values()
+    assert not report.ok
+
+
+@pytest.mark.parametrize(
+    ("change", "heading", "told"),
+    [
+        (lambda p: p / 25.4, "x,y,z", "they were in inches, and are read as mm: head their columns x_in"),
+        (lambda p: p / 25.4, "x_mm,y_mm,z_mm", "they were in inches, and are read as mm"),
+        (lambda p: p * 25.4, "x,y,z", "they were in mm, and are read as inches"),
+        (lambda p: p * [1.0, -1.0, 1.0], "x,y,z", "they were mirrored: change rotation"),
+        (lambda p: p[:, [1, 0, 2]] * [-1.0, 1.0, 1.0], "x,y,z", "turned by about 90 degrees"),
+        (lambda p: p + np.array([0.0, 0.0, 5.0]), "x,y,z", "shifted along z by about 5 mm"),
+        (lambda p: p * [0.5, 0.5, 1.0], "x,y,z", "another drum: they lie 19"),
+        (
+            lambda p: p,
+            "a,b,c",
+            "no columns of points of a flank, in its heading: a, b, c; x, y, z or phi_deg, r, z are read",
+        ),
+        (lambda p: p, "x_mm,y_in,z_mm", "different units of length"),
+    ],
+)
+def test_wrong_files(drum: Flanks, change: Any, heading: str, told: str) -> None:
+    with pytest.raises(camgeo.CallError) as raised:
+        drum.verified(drum.written(change(drum.places), heading))
+    assert told in str(raised.value)
+    assert len(raised.value.faults) == 1
+
+
+def test_units_of_a_bare_heading(drum: Flanks, capsys: pytest.CaptureFixture[str]) -> None:
+    """The remedy for inches does what it says."""
+    path = drum.written(drum.places / 25.4, "x,y,z")
+    assert main(["verify", str(drum.recipe), str(path), "--units", "inch"]) == 0
+    assert "flank upper" in capsys.readouterr().out
+
+
+def test_options_of_discs_are_refused(drum: Flanks) -> None:
+    with pytest.raises(camgeo.CallError, match="--spans: it is for points of discs"):
+        drum.verified(drum.table, spans=30)
+    with pytest.raises(camgeo.CallError, match=r"--align: one of none, rotation, height, .*, not 'all'"):
+        drum.verified(drum.table, align="all")
+
+
+def test_columns_as_inspection_tables_have_them(tmp_path: Path) -> None:
+    """Polar angles, in degrees or radians, radius and z, of one flank or two; empty cells are left out."""
+    path = tmp_path / "points.csv"
+    rows = [f"{k},10,{k / 10},{'' if k == 3 else 5}" for k in range(20)]
+    path.write_text("\n".join(["Phi [deg];R [mm];Z [mm];upper_z".replace(";", ","), *rows]), encoding="utf-8")
+    read = read_flank_points(path)
+    assert (len(read.lines), read.unit, set(read.flank.tolist())) == (20, 1.0, {-1})
+    assert read.places[9] == pytest.approx([10 * math.cos(math.radians(9)), 10 * math.sin(math.radians(9)), 0.9])
+    rows = [f"{k / 10},10,{k},{'' if k == 3 else 5},10,1" for k in range(20)]
+    path.write_text("\n".join(["lower_phi_rad,lower_r_in,lower_z_in,upper_phi_deg,upper_r_in,upper_z_in", *rows]))
+    read = read_flank_points(path)
+    assert (len(read.lines), read.unit, read.flank.tolist().count(1)) == (39, 25.4, 19)
+    assert read.places[5] == pytest.approx([10 * math.cos(0.5), 10 * math.sin(0.5), 5])
+    path.write_text("\n".join(["x,y,z,flank", *[f"{k},1,2,{'side' if k == 4 else 'lower'}" for k in range(20)]]))
+    with pytest.raises(ReadError, match="line 6: a flank is lower or upper, not 'side'"):
+        read_flank_points(path)
