@@ -40,11 +40,19 @@ COMMENT = re.compile(rf"(?P<code>{CODE})|^[ \t]*<!--.*?-->[ \t]*\n|[ \t]*<!--.*?
 LINK = re.compile(rf'(?P<code>{CODE})|\]\((?P<target>[^)\s]+)\)|\b(?P<name>href|src)="(?P<raw>[^"]*)"', re.DOTALL | re.MULTILINE)
 
 
-class Section(NamedTuple):
-    """A heading of the first page, with the pages that it lists: title and file, from the folder docs."""
+class Listed(NamedTuple):
+    """A row of the first page: title and file of a page, from the folder docs, and what the page is for."""
 
     title: str
-    pages: list[tuple[str, str]]
+    page: str
+    words: str
+
+
+class Section(NamedTuple):
+    """A heading of the first page, with the pages that it lists."""
+
+    title: str
+    pages: list[Listed]
 
 
 def why_not() -> str:
@@ -58,9 +66,9 @@ def sections(text: str) -> list[Section]:
     """Give the sections of the first page, in its order."""
     found = []
     for part in re.split(r"^## ", COMMENT.sub(lambda m: m["code"] or "", text), flags=re.MULTILINE)[1:]:
-        pages = re.findall(r"^\| \[([^\]]+)\]\(([^)#\s]+\.md)\)", part, re.MULTILINE)
-        if pages:
-            found.append(Section(part.partition("\n")[0], pages))
+        rows = re.findall(r"^\| \[([^\]]+)\]\(([^)#\s]+\.md)\) \| (.*) \|$", part, re.MULTILINE)
+        if rows:
+            found.append(Section(part.partition("\n")[0], [Listed(*row) for row in rows]))
     return found
 
 
@@ -83,7 +91,7 @@ class Source:
         text = (ROOT / place).read_text(encoding="utf-8")
         text = COMMENT.sub(lambda m: m["code"] or "", text)
         text = LINK.sub(lambda m: self._linked(m, posixpath.dirname(place), name), text)
-        text = plain_lists(text)
+        text = re.sub(r"\[([\w-]+)\.md\]\(", r"[\1](", plain_lists(text))  # a page's name without its suffix
         if more:
             head, _, rest = text.partition("\n# ") if text.startswith("---") else ("", "", text.removeprefix("# "))
             title, _, rest = rest.partition("\n")
@@ -226,7 +234,7 @@ def settings(menu: list[Section]) -> str:
     """Give the generator's settings; a JSON text is a TOML value here."""
     nav = ["{ Start = 'index.md' }"]
     for section in menu:
-        pages = ", ".join(f"{{ {json.dumps(title)} = {json.dumps(page)} }}" for title, page in section.pages)
+        pages = ", ".join(f"{{ {json.dumps(title)} = {json.dumps(page)} }}" for title, page, _ in section.pages)
         nav.append(f"{{ {json.dumps(section.title)} = [{pages}] }}")
     lines = ["[project]", 'site_name = "camgeo"', 'site_description = "Cams that move exactly as intended"']
     lines += ["use_directory_urls = false", f"nav = [{', '.join(nav)}]", 'extra_css = ["site.css"]']
@@ -262,6 +270,7 @@ def build(target: Path, pyodide: Path | None = None) -> str:
         if done.returncode:
             sys.exit(done.stdout + done.stderr)
         made = folder / "site"
+        give_words(made / "search.json", menu)
         if pyodide is not None:
             design(made / DESIGN, pyodide)
         (made / MADE_BY).write_text("python tools/docs/make_site.py\n", encoding="utf-8")
@@ -292,13 +301,27 @@ def gather(folder: Path, *, with_design: bool) -> list[Section]:
     source.write("site.css", CSS)
     menu = []
     for title, pages in sections(index):
-        listed = list[tuple[str, str]]()
-        for text, page in pages:
-            listed.append((text, source.place_of(posixpath.normpath(posixpath.join("docs", page)))))
-            if page == "library.md":
-                listed.append(("Public names", API))
+        listed = [row._replace(page=source.place_of(posixpath.normpath(f"docs/{row.page}"))) for row in pages]
+        for i, row in enumerate(listed):
+            if row.page == "library.md":
+                listed.insert(i + 1, Listed("Public names", API, "functions, classes and errors by name"))
         menu.append(Section(title, listed))
     return menu
+
+
+def give_words(index: Path, menu: list[Section]) -> None:
+    """Let the search find each page by the words of its row on the first page, before what stands in any text.
+
+    The first page and the changes are not sought: both name nearly everything.
+    """
+    words = {re.sub(r"md$", "html", row.page): row.words for section in menu for row in section.pages}
+    left_out = {"index.html", OTHERS["CHANGELOG.md"].replace(".md", ".html")}
+    data = json.loads(index.read_text(encoding="utf-8"))
+    data["items"] = [item for item in data["items"] if item["location"].partition("#")[0] not in left_out]
+    for item in data["items"]:
+        if item["location"] in words:
+            item["path"].append(words[item["location"]])
+    index.write_text(json.dumps(data, ensure_ascii=False), encoding="utf-8")
 
 
 def design(target: Path, pyodide: Path) -> None:
