@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# What is packed is all that is needed: `.ci/wheel_smoke.sh [PYTHON ...]`. An sdist is built, and a wheel from that; for
+# What is packed is all that is needed: `.ci/wheel_smoke.sh [PYTHON ...]`. A release is built twice, the same bytes; for
 # each PYTHON the wheel is installed into a new environment and used in an empty folder, away from the repository.
 set -euo pipefail
 cd "$(dirname "$0")/.."
@@ -11,7 +11,9 @@ unset PYTHONPATH
 
 "$1" -m venv "$work/build"
 "$work/build/bin/pip" install --quiet --disable-pip-version-check build
-"$work/build/bin/python" -m build --outdir "$work/dist" . >"$work/build.log" 2>&1 || { cat "$work/build.log"; exit 1; }
+"$work/build/bin/python" tools/release.py --out "$work/dist"
+"$work/build/bin/python" tools/release.py --out "$work/again" >"$work/again.txt"
+cmp "$work/dist/SHA256SUMS" "$work/again/SHA256SUMS" || { echo "a release built again has other bytes"; exit 1; }
 wheel=$work/dist/camgeo-$version-py3-none-any.whl
 tar -tzf "$work/dist/camgeo-$version.tar.gz" >"$work/sdist.txt"
 for name in CITATION.cff CHANGELOG.md LICENSE recipes/shu-wu.yaml tests/conftest.py docs/recipe.md benchmarks/speed.py tools/docs/make_gallery.py; do

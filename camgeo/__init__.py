@@ -1,4 +1,4 @@
-"""Disc cams from a short recipe to files, their motion judged from the files themselves.
+"""Cams from a short recipe to files, their motion judged from the files themselves.
 
 `load`, `design`, `export`, `check` and `verify` are the library; docs/library.md describes it. Each name is
 imported when it is first asked for.

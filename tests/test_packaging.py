@@ -107,7 +107,7 @@ def test_the_repositorys_own_recipes_are_test_items(arguments, status, shown):
 def test_readme_has_two_lines_to_begin_with() -> None:
     done = subprocess.run([sys.executable, ROOT / ".ci" / "readme_lines"], capture_output=True, text=True, check=True)
     install, test = done.stdout.splitlines()
-    assert install.endswith("camgeo export recipes/shu-wu.yaml -v")
+    assert install.endswith("camgeo export recipes/disc-roller.yaml -v")
     assert "'.[test]'" in test
     readme = (ROOT / "README.md").read_text(encoding="utf-8")
     assert f"\n```sh\n{install}\n```\n" in readme

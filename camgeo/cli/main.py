@@ -110,7 +110,7 @@ def _parser(words: Sequence[str]) -> argparse.ArgumentParser:
     parser = argparse.ArgumentParser(
         prog="camgeo",
         formatter_class=help_form,
-        description="Disc cams from a short recipe to drawings, solids and milling programs, their motion judged from "
+        description="Cams from a short recipe to drawings, solids and milling programs, their motion judged from "
         "the files.",
         epilog="Exit status: 0 all checks hold; 1 a check fails; 2 the recipe or the call is wrong; 3 the surroundings "
         "(disk, missing extra); 130 interrupted.",

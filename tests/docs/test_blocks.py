@@ -13,6 +13,7 @@ import sys
 import tomllib
 from dataclasses import replace
 from functools import cache
+from itertools import takewhile
 from pathlib import Path
 from types import SimpleNamespace
 from typing import NamedTuple, get_args
@@ -127,12 +128,12 @@ def test_a_camshaft_is_read_beside_its_lobes(tmp_path):
 
 
 def commands(text):
-    """Commands of lines of a shell: without comments, each of those joined by `&&` for itself."""
+    """Commands of lines of a shell: without comments and files for output, each of those joined by `&&` for itself."""
     for line in text.replace("\\\n", " ").splitlines():
         words = shlex.split(line, comments=True)
         while words:
             end = words.index("&&") if "&&" in words else len(words)
-            yield words[:end]
+            yield list(takewhile(lambda word: word != ">", words[:end]))
             words = words[end + 1 :]
 
 
@@ -226,9 +227,9 @@ def test_the_starters_that_pages_name_are_written(capsys):
 
 def test_the_readme_prints_what_its_recipe_gives(tmp_path, capsys):
     recipe = next(b.text for b in blocks() if b.page == "README.md" and b.language == "yaml")
-    (tmp_path / "shu-wu.yaml").write_text(recipe, encoding="utf-8")
-    assert main(["check", str(tmp_path / "shu-wu.yaml")]) == 0
-    (shown,) = [b.text for b in blocks() if b.page == "README.md" and b.text.startswith("shu-wu: ")]
+    (tmp_path / "lifter.yaml").write_text(recipe, encoding="utf-8")
+    assert main(["check", str(tmp_path / "lifter.yaml")]) == 0
+    (shown,) = [b.text for b in blocks() if b.page == "README.md" and b.text.startswith("lifter: ")]
     assert capsys.readouterr().out == shown
 
 

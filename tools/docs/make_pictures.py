@@ -1,17 +1,18 @@
-"""Draw docs/pictures/overview.png from files of four shipped recipes: `python tools/docs/make_pictures.py`."""
+"""Draw docs/pictures/overview.png from the files of a shipped recipe: `python tools/docs/make_pictures.py`."""
 
 from __future__ import annotations
 
 import argparse
+import contextlib
+import io
 import tempfile
-from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 import matplotlib as mpl
 import numpy as np
 
-from camgeo.output import pipeline
+from camgeo.cli.main import main as camgeo
 from camgeo.recipe.loading import load
 from camgeo.synthesis.design import designed
 from kin.read.files import read_drawing
@@ -23,88 +24,112 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
     from camgeo.synthesis.design import Design
-    from kin.follower.base import Follower
     from kin.read.drawing.drawing import Drawing
 
 ROOT = Path(__file__).parents[2]
-INK, METAL, ACCENT = "#26323f", "#cfd8e3", "#c8442c"
-PLACES = (600, 300, 300, 300)  # tenths of a degree by which each cam is turned
+NAME = "disc-roller"
+INK, METAL, ACCENT, PALE = "#26323f", "#cfd8e3", "#c8442c", "#f3d6cf"
+PLACE = 1.2  # rad of the shaft angle at which the mechanism is drawn
+KEPT = ("check ", "pitch-radius", "undercut-local", "pressure-angle", "wall", "contour", "motion", "limit")
 
 
 def main() -> None:
-    """Export, read back, draw."""
-    figure, axes = plt.subplots(2, 4, figsize=(14, 5.4), height_ratios=[3, 1.1], constrained_layout=True)
-    names = ("disc-roller", "as-figure-2a", "shu-wu", "w-figure-9")
-    titles = ("disc cam, roller", "support function, yoke", "motion law, constant breadth", "oscillating double roller")
-    for column, (name, title) in enumerate(zip(names, titles, strict=True)):
-        recipe = load(ROOT / "recipes" / f"{name}.yaml")
-        recipe = replace(recipe, export=replace(recipe.export, files=(recipe.export.files[0],)))
-        design = designed(recipe)
-        with tempfile.TemporaryDirectory() as folder:
-            outcome = pipeline.export(recipe, Path(folder))
-            path = Path(folder) / recipe.name / f"{recipe.name}.dxf"
-            drawing = read_drawing(path)
-        follower = design.exact.gauge
-        phi = np.linspace(0.0, 2.0 * np.pi, 3601)
-        error = np.stack([one.rows(phi)[0] / follower.si for one in follower.resting(drawing.contour)])
-        error -= follower.intended(phi)
-        draw_mechanism(axes[0, column], drawing, design, phi[PLACES[column]])
-        axes[0, column].set_title(title, color=INK, fontsize=11)
-        draw_error(axes[1, column], np.degrees(phi), error, outcome.report)
+    """Export, read back, draw: the cam with its follower, its motion, and the verdict."""
+    recipe = load(ROOT / "recipes" / f"{NAME}.yaml")
+    design = designed(recipe)
+    words = io.StringIO()
+    with tempfile.TemporaryDirectory() as folder, contextlib.redirect_stdout(words):
+        camgeo(["export", str(ROOT / "recipes" / f"{NAME}.yaml"), "-v", "--out", folder])
+        drawing = read_drawing(Path(folder) / NAME / f"{NAME}.dxf")
+    figure = plt.figure(figsize=(13, 5.2), constrained_layout=True)
+    grid = figure.add_gridspec(2, 3, width_ratios=[1.0, 1.1, 1.65], height_ratios=[1.25, 1.0])
+    draw_mechanism(figure.add_subplot(grid[:, 0]), drawing, design)
+    phi = np.linspace(0.0, 2.0 * np.pi, 3601)
+    follower = design.exact.gauge
+    draw_motion(figure.add_subplot(grid[0, 1]), phi, follower.intended(phi) - follower.intended(np.zeros(1)))
+    error = np.stack([one.rows(phi)[0] / follower.si for one in follower.resting(drawing.contour)]) - follower.intended(
+        phi
+    )
+    lines = words.getvalue().splitlines()
+    limit = next(float(line.split()[4]) for line in lines if line.startswith("motion"))
+    draw_error(figure.add_subplot(grid[1, 1]), phi, error, limit)
+    draw_verdict(figure.add_subplot(grid[:, 2]), lines)
     figure.savefig(ROOT / "docs" / "pictures" / "overview.png", dpi=110)
 
 
-def draw_mechanism(axis: Axes, drawing: Drawing, design: Design, phi: float) -> None:
-    """The cam as read back, its holes and its follower at one shaft angle, in the cam frame."""
-    follower: Follower = design.exact.gauge
-    fine = np.linspace(0.0, 2.0 * np.pi, 2001)
+def draw_mechanism(axis: Axes, drawing: Drawing, design: Design) -> None:
+    """The cam as it was read from its DXF, and the roller on its stem, the stem upright."""
+    contact = design.follower.contacts[0]
+    along = contact.datum + design.motion.travel(np.array([PLACE]), 0)[0].item()
+    turned = np.exp(
+        1j * (np.pi / 2 - PLACE)
+    )  # the follower runs round the standing cam: turn all so that it is upright
     for contour, face in [(drawing.contour, METAL), *((hole, "white") for hole in drawing.holes)]:
         arcs = contour.as_arcs()[0]
         rows = [arcs.points(share * arcs.length) for share in np.linspace(0.0, 1.0, 33)]
-        axis.fill(*np.stack(rows, axis=1).reshape(-1, 2).T, facecolor=face, edgecolor=INK, lw=1.1)
+        points = np.stack(rows, axis=1).reshape(-1, 2) @ np.array([1.0, 1j]) * turned
+        axis.fill(points.real, points.imag, facecolor=face, edgecolor=INK, lw=1.1)
     axis.plot(0, 0, "+", color=INK, ms=7)
-    if hasattr(follower, "breadth"):
-        u, n = np.array([np.cos(phi), np.sin(phi)]), np.array([-np.sin(phi), np.cos(phi)])
-        lift = float(follower.intended(np.array([phi]))[0])
-        for distance in (lift, lift - follower.breadth):
-            ends = distance * u + np.outer([-1, 1], n) * 0.62 * follower.breadth
-            axis.plot(ends[:, 0], ends[:, 1], color=ACCENT, lw=2)
-    elif not hasattr(follower, "transmission"):
-        contact = design.follower.contacts[0]
-        along = contact.datum + design.motion.travel(np.array([phi]), 0)[0].item()
-        u, n = np.array([np.cos(phi), np.sin(phi)]), np.array([-np.sin(phi), np.cos(phi)])
-        centre, end = (x * u + contact.guide.offset * n for x in (along, along + 3.2 * contact.touch.radius))
-        axis.plot(*np.column_stack([centre, end]), color=ACCENT, lw=3)
-        circle = centre + contact.touch.radius * np.column_stack([np.cos(fine), np.sin(fine)])
-        axis.fill(circle[:, 0], circle[:, 1], facecolor="#f3d6cf", edgecolor=ACCENT, lw=1.2)
-    else:
-        law = follower.transmission
-        psi = float(follower.intended(np.array([phi]))[0])
-        pivot = law.arm * np.array([np.cos(phi), np.sin(phi)])
-        for angle in (phi - psi - law.alpha, phi - psi + law.alpha):
-            centre = pivot + law.arm * np.array([np.cos(angle), np.sin(angle)])
-            axis.plot(*np.column_stack([pivot, centre]), color=ACCENT, lw=1.6)
-            circle = centre + follower.radius * np.column_stack([np.cos(fine), np.sin(fine)])
-            axis.fill(circle[:, 0], circle[:, 1], facecolor="#f3d6cf", edgecolor=ACCENT, lw=1.2)
-        axis.plot(*pivot, "o", color=ACCENT, ms=5)
+    radius, x = contact.touch.radius, -contact.guide.offset
+    top = along + 6.0 * radius
+    axis.plot([x, x], [along, top], color=ACCENT, lw=3.5, solid_capstyle="butt")
+    for side in (-1, 1):
+        axis.fill_between(
+            [x + side * 2.2, x + side * 6.0], along + 3.4 * radius, along + 4.8 * radius, color=INK, alpha=0.35, lw=0
+        )
+    fine = np.linspace(0.0, 2.0 * np.pi, 201)
+    axis.fill(x + radius * np.cos(fine), along + radius * np.sin(fine), facecolor=PALE, edgecolor=ACCENT, lw=1.4)
+    axis.plot(x, along, "o", color=ACCENT, ms=3)
+    axis.set_title("the cam in its DXF, its roller and stem", color=INK, fontsize=10)
     axis.set_aspect("equal")
     axis.axis("off")
 
 
-def draw_error(axis: Axes, degrees: np.ndarray, error: np.ndarray, report: dict) -> None:
-    """Motion error measured from the file, with its limit."""
-    check = next(c for c in report["checks"] if c["name"] == "motion")
-    scale = 1e3 if check["unit"] == "mm" else np.degrees(1e3)
-    unit = "µm" if check["unit"] == "mm" else "mdeg"
+def draw_motion(axis: Axes, phi: np.ndarray, lift: np.ndarray) -> None:
+    """The intended lift over a turn."""
+    axis.plot(np.degrees(phi), lift.ravel(), color=INK, lw=1.6)
+    axis.fill_between(np.degrees(phi), lift.ravel(), color=METAL, alpha=0.6)
+    _framed(axis, "lift that the recipe asks for, mm")
+
+
+def draw_error(axis: Axes, phi: np.ndarray, error: np.ndarray, limit: float) -> None:
+    """Motion error measured from the drawing, with its limit, micrometres."""
     for row in error:
-        axis.plot(degrees, scale * row, color=INK, lw=0.6)
+        axis.plot(np.degrees(phi), 1e3 * row, color=INK, lw=0.6)
     for side in (-1, 1):
-        axis.axhline(side * 1e3 * check["limit"], color=ACCENT, lw=1, ls="--")
+        axis.axhline(side * 1e3 * limit, color=ACCENT, lw=1, ls="--")
+    axis.set_ylim(-1.4e3 * limit, 1.4e3 * limit)
+    axis.set_xlabel("shaft angle, degrees", fontsize=8, color=INK)
+    _framed(axis, "error of that lift on the drawing, µm (dashed: limit)")
+
+
+def _framed(axis: Axes, title: str) -> None:
+    axis.set_title(title, color=INK, fontsize=9)
     axis.set_xlim(0, 360)
     axis.set_xticks([0, 90, 180, 270, 360])
-    axis.set_xlabel("shaft angle, degrees", fontsize=8, color=INK)
-    axis.set_ylabel(f"motion error of the file, {unit}", fontsize=7, color=INK)
     axis.tick_params(labelsize=8, colors=INK)
+    for side in ("top", "right"):
+        axis.spines[side].set_visible(False)
+
+
+def draw_verdict(axis: Axes, lines: list[str]) -> None:
+    """The command and the rows of its answer that speak of the cam and of its motion."""
+    rows = [line for line in lines if line.startswith(KEPT)]
+    shown = [f"$ camgeo export {NAME}.yaml -v", "", *rows, "", *(line for line in lines[-1:])]
+    axis.axis("off")
+    axis.set_title("the verdict, from the files on disk", color=INK, fontsize=10)
+    for row, line in enumerate(shown):
+        colour = ACCENT if line.startswith("$") else INK
+        axis.text(
+            0.0,
+            0.97 - 0.058 * row,
+            line,
+            family="monospace",
+            fontsize=7.2,
+            color=colour,
+            transform=axis.transAxes,
+            va="top",
+        )
 
 
 if __name__ == "__main__":
