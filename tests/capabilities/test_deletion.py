@@ -10,7 +10,7 @@ import sys
 from typing import TYPE_CHECKING
 
 import pytest
-from support.deleted import copy_without, covering, dependent, pages, unshipped, uses, without_marked, without_named
+from support.deleted import LISTS, copy_without, covering, dependent, pages, unshipped, uses, without_marked, without_named
 from support.places import ROOT
 
 from camgeo.recipe.extension import KEYS
@@ -189,7 +189,7 @@ def test_what_is_marked_goes() -> None:
     assert without_marked(page, "dynamics") == page
 
 
-@pytest.mark.parametrize("place", ["docs/index.md"])
+@pytest.mark.parametrize("place", LISTS)
 def test_a_list_of_pages_needs_no_marks(place: str) -> None:
     """What goes with a capability is told by its label, and each such line stands for itself."""
     text = (ROOT / place).read_text(encoding="utf-8")

@@ -271,6 +271,8 @@ def build(target: Path, pyodide: Path | None = None) -> str:
             sys.exit(done.stdout + done.stderr)
         made = folder / "site"
         give_words(made / "search.json", menu)
+        (made / "404.html").unlink()  # it holds addresses from the root of a server, where the site need not stand
+        (made / "sitemap.xml").unlink()  # empty, as nobody knows the site's address
         if pyodide is not None:
             design(made / DESIGN, pyodide)
         (made / MADE_BY).write_text("python tools/docs/make_site.py\n", encoding="utf-8")
