@@ -216,7 +216,8 @@ def test_planted_faults_are_found(tmp_path):
 
 def test_pages_are_rewritten_but_not_their_code(tmp_path):
     source = MADE.Source(tmp_path)
-    text = "`[a](b.md) <!-- c -->` and [x](../recipes/shu-wu.yaml#l) <!-- needs: y -->\n<!-- z -->\n```sh\n<!-- kept -->\n```\n"
+    text = "`[a](b.md) <!-- c -->` and [x](../recipes/shu-wu.yaml#l) <!-- needs: y -->\n<!-- z -->\n"
+    text += "```sh\n<!-- kept -->\n```\n"
     plain = MADE.COMMENT.sub(lambda m: m["code"] or "", text)
     assert plain == "`[a](b.md) <!-- c -->` and [x](../recipes/shu-wu.yaml#l)\n```sh\n<!-- kept -->\n```\n"
     linked = MADE.LINK.sub(lambda m: source._linked(m, "docs", "page.md"), plain)
@@ -226,7 +227,7 @@ def test_pages_are_rewritten_but_not_their_code(tmp_path):
     assert MADE.LINK.sub(lambda m: source._linked(m, "docs", "page.md"), raw) == raw.replace(
         "../recipes/shu-wu.yaml", "recipes/shu-wu.yaml.html"
     )
-    with pytest.raises(FileNotFoundError, match="gone.yaml"):
+    with pytest.raises(FileNotFoundError, match=r"gone\.yaml"):
         source.place_of("recipes/gone.yaml")
     assert MADE.plain_lists("a\n- b\n  c\n- d\nx\n| a | b |\n| --- | --- |\n1. e\n\n   | f |\n") == (
         "a\n\n- b\n  c\n- d\nx\n\n| a | b |\n| --- | --- |\n1. e\n\n    | f |\n"

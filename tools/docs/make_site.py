@@ -37,7 +37,9 @@ OTHERS = {"CHANGELOG.md": "changelog.md", "CONTRIBUTING.md": "contributing.md", 
 
 CODE = r"^ *```.*?^ *```[^\n]*$|``.+?``|`[^`]+`"
 COMMENT = re.compile(rf"(?P<code>{CODE})|^[ \t]*<!--.*?-->[ \t]*\n|[ \t]*<!--.*?-->", re.DOTALL | re.MULTILINE)
-LINK = re.compile(rf'(?P<code>{CODE})|\]\((?P<target>[^)\s]+)\)|\b(?P<name>href|src)="(?P<raw>[^"]*)"', re.DOTALL | re.MULTILINE)
+LINK = re.compile(
+    rf'(?P<code>{CODE})|\]\((?P<target>[^)\s]+)\)|\b(?P<name>href|src)="(?P<raw>[^"]*)"', re.DOTALL | re.MULTILINE
+)
 
 
 class Listed(NamedTuple):
@@ -163,7 +165,7 @@ class Source:
 
 
 def plain_lists(text: str) -> str:
-    """Give a page with lists and tables as the generator reads them: behind an empty line, four deep in a numbered list."""
+    """Give a page with lists and tables as the generator reads them: behind an empty line, four deep below a number."""
     lines = list[str]()
     code = numbered = False
     given = text.split("\n")
@@ -192,7 +194,11 @@ def api() -> str:
     errors = [n for n, v in values.items() if isinstance(v, type) and issubclass(v, BaseException)]
     classes = [n for n, v in values.items() if isinstance(v, type) and n not in errors]
     functions = [n for n in names if n not in errors and n not in classes]
-    lines = ["# Public names of the library", "", "For those who look up one name; [the library](library.md) tells how they go together."]
+    lines = [
+        "# Public names of the library",
+        "",
+        "For those who look up one name; [the library](library.md) tells how they go together.",
+    ]
     for title, group in (("Functions", functions), ("Classes", classes), ("Errors", errors)):
         lines += ["", f"## {title}"]
         for name in group:
@@ -204,9 +210,18 @@ def api() -> str:
 
 def documented(name: str, value: object) -> list[str]:
     """Lines on one name: how it is called, and its docstring."""
-    text = inspect.cleandoc(value.__doc__ or "")
-    called = [] if isinstance(value, type) else ["", "```python", f"{name}{signature(value)}", "```"]
-    return [*called, "", "```text", text.replace("```", "'''"), "```"]
+    lines = [] if isinstance(value, type) else ["", "```python", f"{name}{signature(value)}", "```"]
+    for part in inspect.cleandoc(value.__doc__ or "").split("\n\n"):
+        drawn = re.search(r"^ {2,}|\S {2,}\S", part, re.MULTILINE)  # columns stay as they are
+        lines += ["", "```text", part, "```"] if drawn else ["", escaped(part)]
+    return lines
+
+
+def escaped(text: str) -> str:
+    """A plain text as Markdown; what stands in backticks is code there too."""
+    plain = re.compile(r"([\\*_\[\]|])")
+    parts = re.split(r"(`[^`]+`)", text)
+    return "".join(p if p.startswith("`") else plain.sub(r"\\\1", html.escape(p, quote=False)) for p in parts)
 
 
 def signature(value: object) -> str:
@@ -218,12 +233,14 @@ def members(of: type) -> list[str]:
     """A table of what a class has of its own: name, and the first sentence of its docstring."""
     rows = []
     for name, value in inspect.getmembers(of):
-        inherited = any(name in vars(base) for base in of.__mro__ if base.__module__.split(".")[0] not in {"camgeo", "kin"})
+        inherited = any(
+            name in vars(base) for base in of.__mro__ if base.__module__.split(".")[0] not in {"camgeo", "kin"}
+        )
         if name.startswith("_") or inherited or not (inspect.isfunction(value) or isinstance(value, property)):
             continue
         called = f"{name}()" if inspect.isfunction(value) else name
         first = " ".join(inspect.cleandoc(value.__doc__ or "").split("\n\n")[0].split())
-        rows.append(f"| `{called}` | {html.escape(first, quote=False).replace('|', chr(92) + '|')} |")
+        rows.append(f"| `{called}` | {escaped(first)} |")
     return ["", "| has | what it is |", "| --- | --- |", *rows] if rows else []
 
 
@@ -253,12 +270,21 @@ def settings(menu: list[Section]) -> str:
 
 CSS = """\
 .md-typeset img { background: #fff; }
-.md-typeset table:not([class]) td { min-width: 4rem; }
-"""
+.md-typeset table:not([class]) :is(td, th) { padding: 0.5em 0.8em; }
+.md-typeset table:not([class]) td code { overflow-wrap: normal; word-break: normal; }
+.md-typeset table:not([class]) td:nth-child(n + 3):last-child { min-width: 12rem; }
+.md-typeset table:not([class]) td:nth-child(2):not(:last-child) { min-width: 7rem; }
+.md-typeset table:not([class]) td[align] { min-width: 0; }
+@media (max-width: 40em) {
+  .md-typeset tbody:has(td[align]) { display: flex; flex-wrap: wrap; }
+  .md-typeset tbody:has(td[align]) tr { display: contents; }
+  .md-typeset table:not([class]) td[align] { flex: 0 0 50%; }
+}
+"""  # a wide table scrolls in its place, and no word is cut; in the gallery two pictures stand in a row of a telephone
 
 
 def build(target: Path, pyodide: Path | None = None) -> str:
-    """Make the site anew in a folder; give a line on it. `pyodide` has Pyodide and numpy's wheel for the design page."""
+    """Make the site anew in a folder, and give a line on it; `pyodide` is Pyodide's folder, for the design page."""
     if target.exists() and not (target / MADE_BY).is_file():
         sys.exit(f"{target} is there and is no folder that this script has made: name another")
     with tempfile.TemporaryDirectory() as name:
@@ -289,7 +315,7 @@ def gather(folder: Path, *, with_design: bool) -> list[Section]:
     index = (ROOT / "docs" / "index.md").read_text(encoding="utf-8")
     opens = f'<p><a href="{DESIGN}/index.html">Open the page</a>: it designs and judges in this browser.</p>\n'
     more = {"tab.md": opens, "index.md": opens} if with_design else {}
-    more["library.md"] = f"Each public name with its docstring: [{API.removesuffix('.md')}]({API}).\n"
+    more["library.md"] = f"[Public names]({API}) has each with its docstring.\n"
     for path in sorted((ROOT / "docs").iterdir()):
         if path.suffix == ".md":
             source.page(f"docs/{path.name}", path.name, more.get(path.name, ""))
