@@ -218,7 +218,9 @@ def test_a_line_goes_with_what_it_names() -> None:
     assert without_named("`camgeo sweeper`, `camgeo new toy`, `swept`, sweep", "sweep")
     assert without_named("key `sweep: {...}` of", "sweep") == ""
     assert dependent(text, "sweep") == dependent(text, "valve") == []
-    torn = "The best of\n[many designs](docs/sweep.md), ranked.\n\n```sh\ncamgeo sweep a.yaml\n```\n- a\n  [b](sweep.md)"
+    torn = (
+        "The best of\n[many designs](docs/sweep.md), ranked.\n\n```sh\ncamgeo sweep a.yaml\n```\n- a\n  [b](sweep.md)"
+    )
     assert len(dependent(torn, "sweep")) == 3
 
 

@@ -100,6 +100,17 @@ def test_the_public_names_have_their_docstrings(site):
 
 
 @pytest.mark.slow
+def test_every_command_is_described(site):
+    from camgeo.registry import registry
+
+    page = (site / "commands.html").read_text("utf-8")
+    added = [command for label in registry.labels().values() for command in label.commands]
+    for name in ("export", "check", "verify", "new", "report", "laws", "schema", *added):
+        assert f"usage: camgeo {name} [-h]" in page
+    assert "130 interrupted" in page
+
+
+@pytest.mark.slow
 def test_made_again_it_has_the_same_bytes(site, tmp_path):
     MADE.build(tmp_path / "again")
     assert MADE.zipped(site) == MADE.zipped(tmp_path / "again")
@@ -147,7 +158,8 @@ QUERIES = {
     "pytest": {"pytest"},
     "laser": {"handoff", "manufacture"},
     "desmodromic": {"pairs"},
-    "exit status": {"judge"},
+    "exit status": {"judge", "commands"},
+    "commands": {"commands"},
     "install": {"first-cam"},
     "old drawing": {"follow"},
     "3d printing": {"mechanism", "first-cam"},

@@ -7,7 +7,7 @@ import posixpath
 import re
 import time
 from html.parser import HTMLParser
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 from urllib.parse import unquote, urlsplit
 
 from support.browser import PATIENCE
@@ -45,7 +45,7 @@ class Page(HTMLParser):
             self.pictures.append(dict(attrs).get("src") or "")
 
 
-def make_site() -> object:
+def make_site() -> Any:
     """The script that makes it."""
     return script("make_site", "tools/docs")
 

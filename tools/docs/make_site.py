@@ -30,7 +30,6 @@ SITE = ROOT / "site"
 GENERATOR = "zensical"
 MADE_BY = ".made-by-make-site"  # stands in a folder that this script made, and may make anew
 DESIGN = "design"  # folder of the page that designs in a browser
-API = "api.md"
 SHOWN = ("recipes", "examples")  # folders whose files are all published
 LANGUAGES = {".yaml": "yaml", ".py": "python", ".csv": "text"}
 OTHERS = {"CHANGELOG.md": "changelog.md", "CONTRIBUTING.md": "contributing.md", "README.md": "index.md"}
@@ -72,6 +71,13 @@ def sections(text: str) -> list[Section]:
         if rows:
             found.append(Section(part.partition("\n")[0], [Listed(*row) for row in rows]))
     return found
+
+
+# pages that are written as the site is made, each behind one of docs in the menu
+WRITTEN = {
+    "recipe-verify.md": Listed("Commands", "commands.md", "every command with its options, exit status"),
+    "library.md": Listed("Public names", "api.md", "functions, classes and errors by name"),
+}
 
 
 class Source:
@@ -182,7 +188,24 @@ def plain_lists(text: str) -> str:
     return "\n".join(lines)
 
 
-# --- the library's public names ---------------------------------------------------------------------------------------
+# --- what is written from the code ------------------------------------------------------------------------------------
+
+
+def commands() -> str:
+    """Give the page of all commands, from what they say of themselves."""
+    lines = ["# Commands", "", "For those who look up an option: each command as `camgeo COMMAND --help` describes it."]
+    whole = helped()
+    for name in ["", *re.findall(r"^    ([a-z]+) ", whole, re.MULTILINE)]:
+        lines += ["", f"## camgeo {name}".rstrip(), "", "```text", helped(name) if name else whole, "```"]
+    return "\n".join([*lines, ""])
+
+
+def helped(*words: str) -> str:
+    """What a command says of itself, in lines of a page's width."""
+    surroundings = {**os.environ, "COLUMNS": "88", "NO_COLOR": "1", "PYTHONPATH": str(ROOT)}
+    command = [sys.executable, "-m", "camgeo", *words, "--help"]
+    done = subprocess.run(command, capture_output=True, text=True, check=True, env=surroundings)
+    return done.stdout.rstrip()
 
 
 def api() -> str:
@@ -315,7 +338,7 @@ def gather(folder: Path, *, with_design: bool) -> list[Section]:
     index = (ROOT / "docs" / "index.md").read_text(encoding="utf-8")
     opens = f'<p><a href="{DESIGN}/index.html">Open the page</a>: it designs and judges in this browser.</p>\n'
     more = {"tab.md": opens, "index.md": opens} if with_design else {}
-    more["library.md"] = f"[Public names]({API}) has each with its docstring.\n"
+    more["library.md"] = "[Public names](api.md) has each with its docstring.\n"
     for path in sorted((ROOT / "docs").iterdir()):
         if path.suffix == ".md":
             source.page(f"docs/{path.name}", path.name, more.get(path.name, ""))
@@ -325,14 +348,15 @@ def gather(folder: Path, *, with_design: bool) -> list[Section]:
         if place != "README.md":
             source.page(place, name)
     source.folders()
-    source.write(API, api())
+    source.write("api.md", api())
+    source.write("commands.md", commands())
     source.write("site.css", CSS)
     menu = []
     for title, pages in sections(index):
         listed = [row._replace(page=source.place_of(posixpath.normpath(f"docs/{row.page}"))) for row in pages]
         for i, row in enumerate(listed):
-            if row.page == "library.md":
-                listed.insert(i + 1, Listed("Public names", API, "functions, classes and errors by name"))
+            if row.page in WRITTEN:
+                listed.insert(i + 1, WRITTEN[row.page])
         menu.append(Section(title, listed))
     return menu
 
