@@ -295,13 +295,11 @@ CSS = """\
 .md-typeset img { background: #fff; }
 .md-typeset table:not([class]) :is(td, th) { padding: 0.5em 0.8em; }
 .md-typeset table:not([class]) td code { overflow-wrap: normal; word-break: normal; }
-.md-typeset table:not([class]) td:nth-child(n + 3):last-child { min-width: 12rem; }
-.md-typeset table:not([class]) td:nth-child(2):not(:last-child) { min-width: 7rem; }
-.md-typeset table:not([class]) td[align] { min-width: 0; }
+.md-typeset table:not([class]) td:nth-child(n + 3):last-child:not([align]) { min-width: 12rem; }
+.md-typeset table:not([class]) td:nth-child(2):not(:last-child, [align]) { min-width: 7rem; }
 @media (max-width: 40em) {
-  .md-typeset tbody:has(td[align]) { display: flex; flex-wrap: wrap; }
+  .md-typeset tbody:has(td[align]) { display: grid; grid-template-columns: 1fr 1fr; }
   .md-typeset tbody:has(td[align]) tr { display: contents; }
-  .md-typeset table:not([class]) td[align] { flex: 0 0 50%; }
 }
 """  # a wide table scrolls in its place, and no word is cut; in the gallery two pictures stand in a row of a telephone
 
