@@ -246,6 +246,14 @@ def test_pages_are_rewritten_but_not_their_code(tmp_path):
     )
 
 
+def test_without_the_generator_one_line_says_what_brings_it(tmp_path, monkeypatch):
+    monkeypatch.setattr(MADE, "find_spec", lambda _: None)
+    monkeypatch.setattr("sys.argv", ["make_site.py", str(tmp_path / "site")])
+    with pytest.raises(SystemExit, match=r"pip install -e '\.\[site\]' brings zensical"):
+        MADE.main()
+    assert not (tmp_path / "site").exists()
+
+
 def test_a_folder_of_others_is_left_alone(tmp_path):
     (tmp_path / "mine.txt").write_text("x")
     with pytest.raises(SystemExit, match="name another"):
