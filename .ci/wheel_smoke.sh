@@ -56,7 +56,7 @@ import kin
 
 packed = {path.parts[0] for path in files("camgeo")}
 assert version("camgeo") == camgeo.__version__
-assert not packed & {"tests", "benchmarks", "recipes", "docs"}, packed
+assert not packed & {"tests", "benchmarks", "recipes", "docs", "site", "tools", "web"}, packed
 for package in (camgeo, kin):
     folder = Path(package.__file__).parent
     assert folder.is_relative_to(sys.argv[1]), folder

@@ -135,5 +135,5 @@ def test_what_tests_import_the_line_in_readme_installs() -> None:
 
 def test_only_step_files_need_more_than_the_tests_install() -> None:
     """What any other extra brings is tested wherever tests run; tests of STEP files are skipped (`support.kernel`)."""
-    extras = set(PROJECT["project"]["optional-dependencies"]) - {"test", "dev"}
+    extras = set(PROJECT["project"]["optional-dependencies"]) - {"test", "dev", "site"}
     assert {extra for extra in extras if not required(extra) <= required("test")} == {"step"}

@@ -10,7 +10,17 @@ import sys
 from typing import TYPE_CHECKING
 
 import pytest
-from support.deleted import copy_without, covering, unshipped, uses, without_marked
+from support.deleted import (
+    LISTS,
+    copy_without,
+    covering,
+    dependent,
+    pages,
+    unshipped,
+    uses,
+    without_marked,
+    without_named,
+)
 from support.places import ROOT
 
 from camgeo.recipe.extension import KEYS
@@ -187,6 +197,31 @@ def test_what_is_marked_goes() -> None:
     page = "# A\n<!-- needs: sweep -->\n## B\ntext\n### C\ntext\n## D\n<!-- needs: sweep -->\n```yaml\na\n\nb\n```\nend"
     assert without_marked(page, "sweep") == "# A\n## D\nend"
     assert without_marked(page, "dynamics") == page
+
+
+@pytest.mark.parametrize("place", LISTS)
+def test_a_list_of_pages_needs_no_marks(place: str) -> None:
+    """What goes with a capability is told by its label, and each such line stands for itself."""
+    text = (ROOT / place).read_text(encoding="utf-8")
+    assert "<!--" not in text
+    for name in CAPABILITIES:
+        assert dependent(text, name) == []
+        left = without_named(text, name)
+        assert [page for page in pages(name) if f"{page}.md" in left] == []
+
+
+# needs: valve, camshaft, sweep
+def test_a_line_goes_with_what_it_names() -> None:
+    text = "| a | `camgeo sweep R` |\n| b | `camgeo new disc-roller` |\n\nA.\nThe [engine](docs/engine.md) is B.\nC"
+    assert without_named(text, "sweep") == text.partition("\n")[2]
+    assert without_named(text, "valve") == text.replace("The [engine](docs/engine.md) is B.\n", "")
+    assert without_named("`camgeo sweeper`, `camgeo new toy`, `swept`, sweep", "sweep")
+    assert without_named("key `sweep: {...}` of", "sweep") == ""
+    assert dependent(text, "sweep") == dependent(text, "valve") == []
+    torn = (
+        "The best of\n[many designs](docs/sweep.md), ranked.\n\n```sh\ncamgeo sweep a.yaml\n```\n- a\n  [b](sweep.md)"
+    )
+    assert len(dependent(torn, "sweep")) == 3
 
 
 # needs: sweep

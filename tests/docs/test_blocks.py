@@ -338,9 +338,12 @@ def test_every_link_leads_somewhere():
     assert broken == []
 
 
-def test_every_page_is_linked_from_the_readme():
-    text = (ROOT / "README.md").read_text(encoding="utf-8")
-    assert [page.name for page in (ROOT / "docs").glob("*.md") if f"](docs/{page.name})" not in text] == []
+def test_every_page_is_linked_from_the_first_one():
+    text = (ROOT / "docs" / "index.md").read_text(encoding="utf-8")
+    pages = {page.name for page in (ROOT / "docs").glob("*.md")} - {"index.md"}
+    assert [page for page in sorted(pages) if f"]({page}) |" not in text] == []
+    assert all(f"](../{page})" in text for page in ("CONTRIBUTING.md", "CHANGELOG.md"))
+    assert "](docs/index.md)" in (ROOT / "README.md").read_text(encoding="utf-8")
 
 
 def test_the_plan_of_the_house_names_what_is_there():

@@ -4,7 +4,8 @@ A mark is a comment, `# needs: sweep` in Python and TOML, `<!-- needs: sweep -->
 that line. On the first line of a module it is of the whole. On a line of its own it is of what follows: in Python of a
 statement or an entry with all that is indented below it; in Markdown of a block of code, of a section or a page where
 its heading follows, else up to the next empty line. A page of which nothing is left is gone, and so is the gallery's
-line of a recipe that is.
+line of a recipe that is. README.md and the first page of docs hold no marks: each of their lines that names a
+capability by a word of its label, or by its page, a starter or a recipe of it, goes with it.
 """
 
 from __future__ import annotations
@@ -17,6 +18,7 @@ import subprocess
 from typing import TYPE_CHECKING
 
 from camgeo.recipe.recipe import root_key
+from camgeo.recipe.starter import STARTERS
 from camgeo.recipe.words import words_of
 from camgeo.registry import registry
 from camgeo.schema.yaml_source import read_source
@@ -26,6 +28,7 @@ if TYPE_CHECKING:
     from collections.abc import Collection, Sequence
     from pathlib import Path
 
+LISTS = ("README.md", "docs/index.md")  # pages whose lines go with what they name
 MARK = re.compile(r"(?P<before>.*?)\s*(?:#|<!--) needs: (?P<names>[a-z_, ]+?)(?: -->)?$")
 
 
@@ -98,6 +101,54 @@ def unshipped(name: str) -> list[Path]:
     return [path for path in (ROOT / "recipes").rglob("*.yaml") if uses(path, name)]
 
 
+@functools.cache
+def pages(name: str) -> tuple[str, ...]:
+    """Names of the pages of docs that go with a capability."""
+    found = sorted((ROOT / "docs").glob("*.md"))
+    return tuple(p.stem for p in found if p.stem == name or not without_marked(p.read_text(encoding="utf-8"), name))
+
+
+@functools.cache
+def naming(name: str) -> re.Pattern[str]:
+    """What names a capability in a line of Markdown: its pages, commands, options, starters, words and recipes."""
+    label = registry.labels()[name]
+    starters = [starter for starter in STARTERS if STARTERS.owner(starter) == name]
+    options = [*label.sources, *([name.replace("_", "-")] if label.option else [])]
+    parts = {
+        r"\]\((?:docs/)?(?:{})\.md": pages(name),
+        r"\bcamgeo (?:{})(?![\w-])": [*label.commands, *(f"new {starter}" for starter in starters)],
+        r"--(?:{})(?![\w-])": options,
+        r"`(?:{})(?:: [^`]*)?`": [*label.words, *label.formats, *label.roots, *label.kinds],
+        r"(?:^|[/ ])(?:{})\.yaml\b": [path.stem for path in unshipped(name)],
+    }
+    chosen = [part.format("|".join(map(re.escape, words))) for part, words in parts.items() if words]
+    return re.compile("|".join(chosen))
+
+
+def without_named(text: str, name: str) -> str:
+    """Give a page of `LISTS` without the lines that name a capability."""
+    return "\n".join(line for line in text.split("\n") if not naming(name).search(line))
+
+
+def dependent(text: str, name: str) -> list[str]:
+    """Lines of a page of `LISTS` that would go with a capability, though what stands about them needs them.
+
+    A line stands for itself as a row of a table, as an item of a list, as a paragraph, and in a paragraph where the
+    line before it ends, and it begins, a sentence or a link.
+    """
+    lines, found, code = text.split("\n"), [], False
+    for before, line, behind in zip(["", *lines], lines, [*lines[1:], ""], strict=False):
+        code ^= line.startswith("```")
+        if not naming(name).search(line):
+            continue
+        item = line.startswith(("|", "- ")) and (line.startswith("|") or not behind.startswith("  "))
+        begins = not before or (before.endswith((".", ":", "·")) and re.match(r"[A-Z`\[]", line))
+        ends = not behind or line.endswith((".", "·")) or (before.endswith("·") and line.endswith("."))
+        if code or not (item or (begins and ends)):
+            found.append(line)
+    return found
+
+
 def copy_without(names: Collection[str], folder: Path) -> Path:
     """Copy what the repository holds, but for these capabilities, into a folder."""
     told = subprocess.run(
@@ -119,10 +170,12 @@ def copy_without(names: Collection[str], folder: Path) -> Path:
         copied = folder / place
         copied.parent.mkdir(parents=True, exist_ok=True)
         whole = path.read_text(encoding="utf-8") if path.suffix in {".py", ".md", ".toml"} else ""
-        if "needs: " not in whole and place != "docs/gallery.md":
+        if "needs: " not in whole and place not in {"docs/gallery.md", *LISTS}:
             shutil.copy2(path, copied)
             continue
         text = functools.reduce(without_marked, names, whole)
+        if place in LISTS:
+            text = functools.reduce(without_named, names, text)
         if place == "docs/gallery.md":
             lines = text.split("\n")
             text = "\n".join(line for line in lines if not any(recipe in line for recipe in gone))

@@ -11,11 +11,11 @@ RECIPES = ROOT / "recipes"
 SHIPPED = sorted(RECIPES.glob("*.yaml"))
 
 
-def script(name: str) -> Any:
-    """A script of web/ as a module; those that it imports lie beside it."""
-    if str(ROOT / "web") not in sys.path:
-        sys.path.append(str(ROOT / "web"))
-    spec = importlib.util.spec_from_file_location(f"web_{name}", ROOT / "web" / f"{name}.py")
+def script(name: str, folder: str = "web") -> Any:
+    """A script of a folder as a module; those that it imports lie beside it."""
+    if str(ROOT / folder) not in sys.path:
+        sys.path.append(str(ROOT / folder))
+    spec = importlib.util.spec_from_file_location(f"{folder.replace('/', '_')}_{name}", ROOT / folder / f"{name}.py")
     assert spec is not None
     assert spec.loader is not None
     module = importlib.util.module_from_spec(spec)

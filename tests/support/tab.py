@@ -42,14 +42,8 @@ def built(folder: Path) -> Path:
 ASKED: list[str] = []  # names of the files that browsers have asked servers for
 
 
-class _Strict(http.server.SimpleHTTPRequestHandler):
-    """A static server that says nothing, and sends the page's own policy with every file, the worker's among them."""
-
-    def end_headers(self) -> None:
-        index = (Path(self.directory) / "index.html").read_text("utf-8")
-        (policy,) = re.findall(r'http-equiv="Content-Security-Policy" content="([^"]*)"', index)
-        self.send_header("Content-Security-Policy", policy)
-        super().end_headers()
+class Plain(http.server.SimpleHTTPRequestHandler):
+    """A static server that says nothing, and notes what it is asked for."""
 
     def do_GET(self) -> None:
         """Send a file, and note it."""
@@ -60,10 +54,20 @@ class _Strict(http.server.SimpleHTTPRequestHandler):
         """Say nothing."""
 
 
+class _Strict(Plain):
+    """One that sends the page's own policy with every file, the worker's among them."""
+
+    def end_headers(self) -> None:
+        index = (Path(self.directory) / "index.html").read_text("utf-8")
+        (policy,) = re.findall(r'http-equiv="Content-Security-Policy" content="([^"]*)"', index)
+        self.send_header("Content-Security-Policy", policy)
+        super().end_headers()
+
+
 @contextmanager
-def served(folder: Path) -> Iterator[str]:
+def served(folder: Path, how: type[Plain] = _Strict) -> Iterator[str]:
     """Serve a folder meanwhile, and give its address."""
-    server = http.server.ThreadingHTTPServer(("127.0.0.1", 0), functools.partial(_Strict, directory=str(folder)))
+    server = http.server.ThreadingHTTPServer(("127.0.0.1", 0), functools.partial(how, directory=str(folder)))
     threading.Thread(target=server.serve_forever, daemon=True).start()
     try:
         yield f"http://127.0.0.1:{server.server_port}/"
