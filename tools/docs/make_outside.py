@@ -162,7 +162,7 @@ def run(*command: object, folder: Path | None = None) -> str:
 
 
 def freecad(made: list[Sample], work: Path) -> list[Row]:
-    """The area of the contour of a drawing, and the volume of a solid."""
+    """FreeCAD measures the area of the contour of a drawing, and the volume of a solid."""
     mine = [one for one in made if one.path.suffix in {".dxf", ".stl", ".3mf", ".step"}]
     jobs, script = work / "jobs.json", work / "open.py"
     pieces = [1 if "spline" in one.form else one.pieces for one in mine]
@@ -181,7 +181,7 @@ def freecad(made: list[Sample], work: Path) -> list[Row]:
 
 
 def openscad(made: list[Sample], work: Path) -> list[Row]:
-    """The volume of the STL that it writes, of a solid or of a drawing that it extrudes by 1 mm."""
+    """OpenSCAD writes an STL of a solid, or of a drawing that it extrudes by 1 mm. The volume is that of this STL."""
     rows = []
     for one in made:
         if one.path.suffix == ".step":
@@ -209,7 +209,7 @@ def _stl_volume(path: Path) -> float:
 
 
 def prusa(made: list[Sample], work: Path) -> list[Row]:
-    """The volume that it reads, and whether it slices the solid."""
+    """PrusaSlicer reads the volume of a solid, and slices it."""
     rows = []
     for one in made:
         if one.path.suffix not in {".stl", ".3mf", ".step"}:
@@ -270,9 +270,9 @@ def slicing_of_sets(work: Path) -> list[str]:
 
 
 def inkscape(made: list[Sample], work: Path) -> list[Row]:
-    """Width and height of the layer CUT in mm, in a filled copy, because the outline of a line is rounded.
+    """Inkscape measures width and height of the layer CUT in mm, in a filled copy, as the outline of a line is rounded.
 
-    Inkscape gives six digits.
+    It gives six digits.
     """
     rows = []
     for one in made:
@@ -291,7 +291,7 @@ def inkscape(made: list[Sample], work: Path) -> list[Row]:
 
 
 def librecad(made: list[Sample], work: Path) -> list[Row]:
-    """Whether it prints the drawing; without its window it measures nothing."""
+    """LibreCAD prints the drawing; without its window it measures nothing."""
     rows = []
     for one in made:
         if one.path.suffix != ".dxf":
