@@ -162,7 +162,7 @@ def run(*command: object, folder: Path | None = None) -> str:
 
 
 def freecad(made: list[Sample], work: Path) -> list[Row]:
-    """The area of the contour that it makes of a drawing, the volume of a solid."""
+    """FreeCAD measures the area of the contour of a drawing, and the volume of a solid."""
     mine = [one for one in made if one.path.suffix in {".dxf", ".stl", ".3mf", ".step"}]
     jobs, script = work / "jobs.json", work / "open.py"
     pieces = [1 if "spline" in one.form else one.pieces for one in mine]
@@ -181,7 +181,7 @@ def freecad(made: list[Sample], work: Path) -> list[Row]:
 
 
 def openscad(made: list[Sample], work: Path) -> list[Row]:
-    """What it extrudes from a drawing by 1 mm, or makes of a solid, measured on the STL that it writes."""
+    """OpenSCAD writes an STL of a solid, or of a drawing that it extrudes by 1 mm. The volume is that of this STL."""
     rows = []
     for one in made:
         if one.path.suffix == ".step":
@@ -209,7 +209,7 @@ def _stl_volume(path: Path) -> float:
 
 
 def prusa(made: list[Sample], work: Path) -> list[Row]:
-    """The volume that it reads, and whether it slices."""
+    """PrusaSlicer reads the volume of a solid, and slices it."""
     rows = []
     for one in made:
         if one.path.suffix not in {".stl", ".3mf", ".step"}:
@@ -270,9 +270,9 @@ def slicing_of_sets(work: Path) -> list[str]:
 
 
 def inkscape(made: list[Sample], work: Path) -> list[Row]:
-    """Width and height of the layer CUT in mm, in a copy that is filled, as the outline of a line is rounded.
+    """Inkscape measures width and height of the layer CUT in mm, in a filled copy, as the outline of a line is rounded.
 
-    Inkscape gives to six digits what is seen of a layer.
+    It gives six digits.
     """
     rows = []
     for one in made:
@@ -291,7 +291,7 @@ def inkscape(made: list[Sample], work: Path) -> list[Row]:
 
 
 def librecad(made: list[Sample], work: Path) -> list[Row]:
-    """A page of the drawing, which must show something; it measures nothing without its window."""
+    """LibreCAD prints the drawing; without its window it measures nothing."""
     rows = []
     for one in made:
         if one.path.suffix != ".dxf":
@@ -325,15 +325,19 @@ PROGRAMS = {  # the command, and how it tells its version
 }
 HEAD = """# What other people's programs make of the files
 
-Written by `python tools/docs/make_outside.py`, which makes these files, opens them in the programs that it finds and
-asks each what it measures. An area is that of the contour in mm^2 (of an SVG with its openings cut out), a volume in
-mm^3; `off` is the share by which it differs from the exact cam's own, so it holds the file's tolerance and the
-program's rounding.
+Drawings and solids of camgeo were opened in five programs of other people, and each program was made to measure them.
+Solids agree with the exact cam in every program that opens them. Drawings do too, apart from arcs in OpenSCAD:
 
-In short: FreeCAD, LibreCAD and Inkscape take the drawings with their arcs, FreeCAD splines too. OpenSCAD takes meshes
-and polylines; of a DXF's arcs it draws the chords, of an SVG's coarse polygons, and it fills an SVG's openings.
-PrusaSlicer slices every solid. (FreeCAD's area of a face within one long spline is out by up to four percent; taken
-span by span it is right, and that is what is reported.)
+- FreeCAD, LibreCAD and Inkscape read the drawings with their arcs, and FreeCAD reads splines too. FreeCAD 0.20 does
+  not open 3MF.
+- OpenSCAD is right with meshes and polylines. It draws the arcs of a DXF as chords and those of an SVG as coarse
+  polygons, and it fills the openings of an SVG. Give it an STL, or a DXF of polylines.
+- PrusaSlicer slices every solid.
+
+In the tables an area is that of the contour in mm^2, for an SVG with its openings subtracted, and a volume is in mm^3.
+`off` is the share by which the figure differs from that of the exact cam; it includes the tolerance of the file and
+the rounding of the program. FreeCAD's area of a face inside one long spline is wrong by up to four percent, so the
+table has the sum over its spans. `python tools/docs/make_outside.py` writes this page.
 """
 
 
@@ -357,7 +361,7 @@ def main() -> None:
             text.append("| recipe | file | what | measured | off | it says |\n| --- | --- | --- | --- | --- | --- |")
             text += [row.cells() for row in rows]
             if program == "PrusaSlicer":
-                told = "The sets to print, all bodies in one 3MF, sliced with the settings that the program brings"
+                told = "Sets to print, with all bodies in one 3MF, sliced with the program's own settings"
                 text += [f"\n{told} (volumes in mm^3):\n", *slicing_of_sets(work)]
         text += section(work)
     (ROOT / "docs" / "outside.md").write_text("\n".join(text) + "\n", encoding="utf-8")

@@ -34,9 +34,9 @@ SOLIDS = ("stl", "step")
 HEAD = """
 ## Each follower of a disc cam
 
-One cam of each, its drawing of arcs, its STL and its STEP: by how much the measured area, volume or width is off, as a
-share. The area of a ring's contour is that of its opening. admesh, trimesh and ezdxf say whether they find something to
-repair: edges without a partner, facets the wrong way, faults of the drawing.
+One cam for each follower, as a drawing of arcs, an STL and a STEP. The figure is the share by which the measured area,
+volume or width is off; the area of a ring's contour is that of its opening. admesh, trimesh and ezdxf say whether
+anything needs repair: edges without a partner, facets the wrong way, faults of the drawing.
 """
 COLUMNS = (
     "FreeCAD DXF, area",
