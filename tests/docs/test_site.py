@@ -164,6 +164,7 @@ QUERIES = {
     "old drawing": {"follow"},
     "3d printing": {"mechanism", "first-cam"},
     "pressure angle": {"recipe-verify"},
+    "advertised duration": {"engine", "recipe-motion"},
 }
 
 
