@@ -165,6 +165,9 @@ QUERIES = {
     "3d printing": {"mechanism", "first-cam"},
     "pressure angle": {"recipe-verify"},
     "advertised duration": {"engine", "recipe-motion"},
+    "several figures": {"toy"},
+    "probe error": {"made"},
+    "better law": {"follow"},
 }
 
 
