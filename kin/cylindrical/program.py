@@ -18,7 +18,7 @@ import numpy as np
 
 from kin.cylindrical.cutters import END, left_on
 from kin.cylindrical.gauge import gauges_of
-from kin.cylindrical.intent import Groove, Rib
+from kin.cylindrical.intent import Groove
 from kin.cylindrical.judge import CONTOUR, MOTION, SLACK, assured, in_unit
 from kin.cylindrical.turned import passes_of, read_turned
 from kin.cylindrical.verdict import DrumVerdict, FlankVerdict, MotionError
@@ -370,7 +370,7 @@ def _ways(program: TurnedProgram, passes: Sequence[Pass], drum: DrumIntent) -> C
     ends = np.array([(*move.start, *move.end) for move in low]).reshape(-1, 4)
     deep = np.maximum(ends[:, 2], drum.floor)
     within = [gauge.size(deep) - gauge.side * (ends[:, 0] - gauge.axis(ends[:, 3])) > 0.0 for gauge in gauges_of(drum)]
-    free = np.any(within, axis=0) if isinstance(drum.track, Rib) else np.all(within, axis=0)
+    free = np.any(within, axis=0) if drum.track.distance else np.all(within, axis=0)
     if not free.all():
         bad.append(f"line {low[int(np.argmin(free)) // 2].line} stands in the metal")
     return count_check("ways", bad)

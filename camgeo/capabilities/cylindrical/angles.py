@@ -2,16 +2,16 @@
 
 from __future__ import annotations
 
-import math
 from typing import TYPE_CHECKING
 
 import numpy as np
+
+from kin.numeric.angles import TURN
 
 if TYPE_CHECKING:
     from kin.law.piecewise import Piecewise
     from kin.numeric.arrays import Array
 
-TURN = 2.0 * math.pi
 LOOKS = 720  # parts of a turn over each of which a second derivative is bounded
 WIDEST = TURN / 36.0
 

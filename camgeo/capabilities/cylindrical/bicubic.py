@@ -32,9 +32,10 @@ from typing import TYPE_CHECKING, Generic, NamedTuple, TypeVar
 import numpy as np
 
 from camgeo.capabilities.cylindrical.bends import places_along
-from camgeo.capabilities.cylindrical.grid import SAME, TURN, breaks_of
+from camgeo.capabilities.cylindrical.grid import SAME, breaks_of
 from camgeo.common.rounding import upward
 from camgeo.fit.nodes import ToleranceError, check_precision, rounding
+from kin.numeric.angles import TURN
 from kin.numeric.elementary import cos, sin, sqrt
 from kin.numeric.interval import Ball
 from kin.numeric.jet import BallJet, Jet

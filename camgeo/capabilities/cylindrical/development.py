@@ -11,13 +11,14 @@ from typing import TYPE_CHECKING, Literal, NamedTuple
 
 import numpy as np
 
-from camgeo.capabilities.cylindrical.angles import LOOKS, TURN, looks_of, parted
+from camgeo.capabilities.cylindrical.angles import LOOKS, looks_of, parted
 from camgeo.capabilities.cylindrical.bends import bends
 from camgeo.capabilities.cylindrical.keys import OUTER, PITCH
 from camgeo.capabilities.cylindrical.undercut import cut_at
 from camgeo.fit.bound import Bound
 from camgeo.fit.nodes import ToleranceError
 from kin.cylindrical.intent import Developed
+from kin.numeric.angles import TURN
 from kin.numeric.interval import Ball
 
 if TYPE_CHECKING:
@@ -79,7 +80,7 @@ def drawn(design: DrumDesign, line: Developed, tolerance: float) -> Line:
     theta = np.unique(np.concatenate([theta, [begin, begin + period, begin + period + OVERLAP]]))
     theta = theta[(theta >= begin) & (theta <= begin + period + OVERLAP)]
     points = _pitch(design, line.radius, theta) if line.flank == PITCH else _flank(design, line, theta)
-    if design.recipe.rotation == "ccw":
+    if design.recipe.mirrored:
         points = points * np.array([-1.0, 1.0]) + 0.0
     return Line(line, points, off)
 
@@ -95,7 +96,7 @@ def unrolled(design: DrumDesign, tolerance: float) -> list[Array]:
 
 def _reach(design: DrumDesign, radius: float, at: float) -> float:
     """Place of a polar angle, rad, on a development, mm."""
-    return (radius if design.recipe.rotation == "cw" else -radius) * at
+    return design.recipe.sense * radius * at
 
 
 def _mark(design: DrumDesign, radius: float, at: float) -> Array:

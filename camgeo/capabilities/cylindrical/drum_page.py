@@ -22,7 +22,7 @@ from camgeo.capabilities.cylindrical.charts import (
 )
 from camgeo.capabilities.cylindrical.figures import contact_length
 from camgeo.capabilities.cylindrical.shells import FACE, PLACES, RIM, shells
-from camgeo.capabilities.cylindrical.turning import LINES, rollers, scene, sense, slope, touched
+from camgeo.capabilities.cylindrical.turning import LINES, rollers, scene, slope, touched
 from camgeo.measures.units import UNIT_NAMES
 from camgeo.report.page import tables
 from camgeo.report.page.page import pack_numbers, picture, plotted
@@ -96,7 +96,7 @@ def _played(design: DrumDesign, of: Sequence[Shell], digits: int) -> dict[str, A
     boat = {"turn": pack_numbers(np.degrees(slope(design, theta)))} if recipe.roller.shoe is not None else {}
     return {
         "turns": recipe.turns,
-        "sense": sense(design),
+        "sense": design.recipe.sense,
         "digits": digits,
         "places": PLACES,
         "parts": LINES,

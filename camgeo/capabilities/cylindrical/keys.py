@@ -3,7 +3,9 @@
 from __future__ import annotations
 
 import math
-from typing import TYPE_CHECKING, Literal, TypeAlias
+from typing import TYPE_CHECKING, Literal
+
+import numpy as np
 
 from camgeo.formats.options import RECIPE_UNITS, SOLID_UNITS, TOLERANCE
 from camgeo.motions.inputs import Input
@@ -25,20 +27,24 @@ from camgeo.schema.fields import MOST, Field, FieldTable, Kind, OwnForm, either,
 from camgeo.schema.json_schema import number_schema
 from camgeo.schema.read_scalar import read_numeric
 from camgeo.schema.yaml_source import Scalar, join
+from kin.numeric.angles import TURN
 from kin.numeric.records import dataclass, replace
 
 if TYPE_CHECKING:
     from typing import ClassVar
 
     from camgeo.capabilities.cylindrical.guide import Guide
+    from camgeo.capabilities.cylindrical.tracks import Track
     from camgeo.motions.motion import MotionSource
     from camgeo.part.part import Part
+    from camgeo.recipe.export import FileRequest
     from camgeo.recipe.figure_bounds import Bound
     from camgeo.recipe.materials import Material
     from camgeo.registry.formats import Format
     from camgeo.schema.fields import Schema
     from camgeo.schema.reader import Reader
     from camgeo.schema.yaml_source import Node
+    from kin.numeric.arrays import Array
 
 FLOOR_GAP = 0.5  # mm that a roller stands off the floor where the recipe does not say where it begins
 MOST_RADII = 20  # of one development
@@ -46,33 +52,6 @@ OUTER, PITCH = "outer", "pitch"
 MOST_TURNS = 40
 APEX = "axis"  # of a cone whose apex is on the drum's axis
 STEEPEST_CONE = 60  # degrees, half angle of a conical roller
-
-
-@dataclass(frozen=True)
-class Groove:
-    """A groove of a depth with a clearance on its upper flank, square to it, mm."""
-
-    depth: float
-    clearance: float
-
-
-@dataclass(frozen=True)
-class Rib:
-    """A rib of a depth between two rollers, whose axes are a distance apart along the cam's axis, mm."""
-
-    depth: float
-    distance: float
-
-
-@dataclass(frozen=True)
-class End:
-    """An end face towards the top, with the metal below, or towards the bottom, to a depth below the blank, mm."""
-
-    facing: Literal["top", "bottom"]
-    depth: float
-
-
-Track: TypeAlias = Groove | Rib | End
 
 
 @dataclass(frozen=True)
@@ -101,6 +80,11 @@ class Roller:
     def side(self) -> float:
         """Radius of curvature of its sides, mm: that of the arcs of a shoe."""
         return self.radius if self.shoe is None else 0.5 * (0.25 * self.shoe**2 / self.radius + self.radius)
+
+    def half_width(self, along: Array) -> Array:
+        """Half the width (n,), mm, of a shoe at distances along it from its middle, mm; 0 beyond its tips."""
+        side = self.side
+        return np.maximum(np.sqrt(np.maximum(side * side - along * along, 0.0)) - (side - self.radius), 0.0)
 
     def resized(self, radius: float) -> Roller:
         """The roller of another radius, mm."""
@@ -152,7 +136,21 @@ class DrumRecipe(ShaftOrder):
     @property
     def period(self) -> float:
         """Shaft angle, rad, after which the motion repeats."""
-        return 2.0 * math.pi * self.turns
+        return TURN * self.turns
+
+    @property
+    def mirrored(self) -> bool:
+        """Whether the drum that is made is the mirror image, y -> -y, of that which is computed."""
+        return self.rotation == "ccw"
+
+    @property
+    def sense(self) -> float:
+        """Factor of y, and of polar angles, of the drum that is made: -1 of one that is mirrored."""
+        return -1.0 if self.mirrored else 1.0
+
+    def tolerance(self, request: FileRequest) -> float:
+        """Tolerance of a requested file, mm: its own, or that of the export."""
+        return request.tolerance or self.export.tolerance
 
     @property
     def level(self) -> float:

@@ -208,7 +208,7 @@ def _section(
             named = ", ".join(str(line) for line in entry["outliers"][:MOST_NAMED])
             more = f" and {len(entry['outliers']) - MOST_NAMED} more" if len(entry["outliers"]) > MOST_NAMED else ""
             rows.append(("  stand out, not in it", f"points of lines {named}{more}"))
-    play = _play(drum, made, mm)
+    play = _play(design, drum, made)
     if play is not None:
         ends = [f"{play[end]:.4g} {play['unit']} at {play[f'{end}_at_deg']:.1f} degrees" for end in ("least", "most")]
         rows.append(("play", " to ".join(ends)))
@@ -269,11 +269,9 @@ def _ring(
     }
 
 
-def _play(drum: DrumIntent, made: MadeDrum, mm: float) -> dict[str, Any] | None:
+def _play(design: DrumDesign, drum: DrumIntent, made: MadeDrum) -> dict[str, Any] | None:
     """Play between both flanks of a groove, where each has a ring at about the same radius; None without."""
-    from kin.cylindrical.intent import Groove
-
-    if not isinstance(drum.track, Groove):
+    if "play" not in design.recipe.track.figures:
         return None
     pairs = [
         (low, high)
@@ -286,13 +284,14 @@ def _play(drum: DrumIntent, made: MadeDrum, mm: float) -> dict[str, Any] | None:
     low, high = pairs[0]
     theta = equal_steps(len(low.error))
     told = drum.follower.told(1.0) / (1.0 if drum.follower.arm is None else drum.follower.arm.length)
-    play = told * (exact_play(drum, theta) if drum.track.clearance else np.zeros(len(theta))) + high.error - low.error
-    scale = 1.0 if drum.follower.unit == "deg" else 1.0 / mm
+    play = told * exact_play(drum, theta) + high.error - low.error
+    scale = 1.0 if drum.follower.unit == "deg" else 1.0 / design.recipe.mm
+    unit = in_units(design.recipe, None, drum.follower.unit)[1]
     least, most = int(np.argmin(play)), int(np.argmax(play))
     return {
         "least": float(scale * play[least]),
         "least_at_deg": least * 360.0 / len(play),
         "most": float(scale * play[most]),
         "most_at_deg": most * 360.0 / len(play),
-        "unit": drum.follower.unit if drum.follower.unit == "deg" or mm == 1.0 else "in",
+        "unit": unit,
     }
