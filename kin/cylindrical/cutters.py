@@ -340,13 +340,10 @@ def _over(values: Array | Mask, pick: np.ufunc) -> Array:
 
 
 def _points(gauge: Gauge, theta: Array, rho: Array) -> _Points:
-    """Where the roller touches: n = -sin a e_t + cos a k with (rho + y' + R g) sin a - z' cos a = side y g."""
+    """Where the roller touches, by n = -sin a e_t + cos a k, with derivatives."""
     axis, place, side = gauge.led.axis(*gauge.lifts.at(theta)), rho[:, None], gauge.side
     growth, size = gauge.spread, gauge.size(place)
-    ahead, lag = place + size * growth + axis.y1, side * growth * axis.y
-    square = ahead**2 + axis.z1**2
-    h = np.sqrt(square - lag**2)
-    sine, cosine = (lag * ahead + axis.z1 * h) / square, (ahead * h - lag * axis.z1) / square
+    sine, cosine, h = gauge.leaning(axis, place)
     by_angle = (side * growth * axis.y1 - sine * axis.y2 + cosine * axis.z2) / h
     by_place, reach = -sine * (1.0 + growth**2) / h, side * size
     y, z = axis.y - reach * sine, axis.z + reach * cosine

@@ -39,10 +39,8 @@ FINE = 0.05  # of the tolerance, within which what lies between points is known
 MOST = 400_000  # points of a line
 GAP = 1e-6  # of the radius: ends of lines that are so close meet
 SLACK = 1e-6  # of a limit that follows from the steepest slope
-TURNED, MEETINGS = (
-    4096,
-    40,
-)  # angles of a turn at which arms and crossings are looked at; steps to where its axis meets a cylinder
+TURNED = 4096  # angles of a turn, at which it is looked how fast an axis on an arm goes aside
+MEETINGS = 40  # steps to the angle at which an axis on an arm meets a cylinder
 
 
 class _Line(NamedTuple):

@@ -15,7 +15,7 @@ from kin.contour.arcs import Arcs
 from kin.contour.holes import farthest
 from kin.cylindrical.crossings import Crossings
 from kin.cylindrical.edges import Peak
-from kin.cylindrical.faces import BLANK, BORE, BOTTOM, FINE, FLOOR, TOP, Body, Faces, Stands
+from kin.cylindrical.faces import BLANK, BORE, BOTTOM, FINE, FLOOR, TOP
 from kin.cylindrical.figures import exact_play
 from kin.cylindrical.gauge import gauges_of
 from kin.cylindrical.judge import (
@@ -30,7 +30,6 @@ from kin.cylindrical.judge import (
     play_check,
     volume_check,
 )
-from kin.cylindrical.roller import Worst
 from kin.cylindrical.smooth import Smooth, look, off_flank
 from kin.cylindrical.verdict import DrumVerdict, FlankVerdict, MotionError
 from kin.numeric.angles import TURN, degrees
@@ -96,12 +95,8 @@ def judge_shell(shell: Shell, drum: DrumIntent, limits: Limits, kind: str = "") 
     slack = ROUNDING * max(drum.radius, drum.length)
     try:
         found = _sorted(shell, drum, gauges, limits.tolerance)
-        none, nothing = np.empty(0, dtype=np.bool_), Worst(*(np.empty(0) for _ in range(4)))
-        body = Body(np.empty((0, 3)), np.empty((0, 3), dtype=np.intp))
-        stands = tuple(Stands(gauge, body, none, none, nothing, none, none) for gauge in gauges)
-        kinds = Faces((), np.empty(0, dtype=np.intp), found.off, stands)
-        job = Judged(body, kinds, drum, limits, slack)
-        checks += plain_checks(job)
+        job = Judged(gauges, drum, limits, slack)
+        checks += plain_checks(job, found.off)
         for gauge in gauges:
             flank, own_seen, own = _flank(job, gauge, found.flanks[gauge.name])
             verdicts.append(flank)

@@ -21,7 +21,7 @@ from typing import TYPE_CHECKING, NamedTuple
 import numpy as np
 
 from kin.cylindrical.lifts import widened
-from kin.cylindrical.roller import BESIDE, WITHIN, Course, Gauge, Held, Near, Place, Stand
+from kin.cylindrical.roller import BESIDE, WITHIN, Gauge, Held, Near, Place, Stand
 from kin.numeric.errors import UnsettledError
 from kin.numeric.records import dataclass
 
@@ -90,11 +90,6 @@ class LedGauge(Gauge):
     def lever(self) -> float:
         """Travel of the roller's axis, mm, for one of the motion."""
         return self.guide.lever
-
-    @property
-    def course(self) -> Course:
-        """What leads the roller, and its radius along it."""
-        return Course(self.guide, self.radius - self.at * self.growth, self.growth)
 
     @cached_property
     def _upright(self) -> float:

@@ -29,7 +29,7 @@ from kin.numeric.records import dataclass
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
-    from kin.cylindrical.guide import Guide
+    from kin.cylindrical.guide import Axis, Guide
     from kin.cylindrical.lifts import Lifts
     from kin.law.contacts import Side
     from kin.numeric.arrays import Array, Indices, Mask
@@ -96,12 +96,12 @@ class Worst(NamedTuple):
     bend: Array
 
 
-class Course(NamedTuple):
-    """What leads a roller, and its radius, mm: `base` at the cam's axis, growing by `growth` along the roller."""
+class Leaning(NamedTuple):
+    """Sine and cosine of a contact's angle a against z, towards -e_t, and h = cos a A + sin a z', mm."""
 
-    guide: Guide
-    base: float
-    growth: float
+    sine: Array
+    cosine: Array
+    h: Array
 
 
 @dataclass(frozen=True, eq=False)
@@ -134,15 +134,18 @@ class Gauge:
         """Radius of the roller, mm, at places along it, mm."""
         return self.radius + 0.0 * along
 
+    def leaning(self, axis: Axis[Array], along: Array) -> Leaning:
+        """Where the roller touches at places along it, mm: A sin a - z' cos a = side y g, A = along + y' + R g."""
+        growth, size = self.spread, self.size(along)
+        ahead, lag = along + size * growth + axis.y1, self.side * growth * axis.y
+        square = ahead**2 + axis.z1**2
+        h = np.sqrt(square - lag**2)
+        return Leaning((lag * ahead + axis.z1 * h) / square, (ahead * h - lag * axis.z1) / square, h)
+
     @property
     def lever(self) -> float:
         """Travel of the roller's axis, mm, for one of the motion."""
         return 1.0
-
-    @property
-    def course(self) -> Course:
-        """What leads the roller, and its radius along it."""
-        return Course(Slide(0.0, self.level), self.radius, 0.0)
 
     @property
     def reach(self) -> float:
