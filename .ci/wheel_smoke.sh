@@ -10,7 +10,7 @@ trap 'rm -rf "$work"' EXIT
 unset PYTHONPATH
 
 "$1" -m venv "$work/build"
-"$work/build/bin/pip" install --quiet --disable-pip-version-check build
+"$work/build/bin/pip" install --quiet --disable-pip-version-check build '.[site]'
 "$work/build/bin/python" tools/release.py --out "$work/dist"
 "$work/build/bin/python" tools/release.py --out "$work/again" >"$work/again.txt"
 cmp "$work/dist/SHA256SUMS" "$work/again/SHA256SUMS" || { echo "a release built again has other bytes"; exit 1; }

@@ -2,10 +2,11 @@
 
     camgeo-X.Y.Z.tar.gz             the source: code, tests, recipes, docs
     camgeo-X.Y.Z-py3-none-any.whl   what is installed, built from that source
+    camgeo-X.Y.Z-site.zip           the site of the docs
     SHA256SUMS                      their checksums
 
-Built again, on any day and in any folder, they are the same bytes: every time in them is that of the last commit. Needs
-git and the package `build`.
+Built again, on any day and in any folder, they are the same bytes: every time in source and wheel is that of the last
+commit, and the site has none. Needs git, the package `build` and the extra `site`.
 """
 
 from __future__ import annotations
@@ -39,9 +40,13 @@ def release(out: Path) -> list[Path]:
         _run(sys.executable, "-m", "build", "--outdir", str(folder / "dist"), str(folder / "clone"), **settings)
         (source,) = (folder / "dist").glob("*.tar.gz")
         (wheel,) = (folder / "dist").glob("*.whl")
-        made = [out / source.name, out / wheel.name]
+        site = source.name.replace(".tar.gz", "-site.zip")
+        made = [out.resolve() / name for name in (source.name, wheel.name, site)]
         made[0].write_bytes(_timeless(source.read_bytes(), int(moment)))
         made[1].write_bytes(wheel.read_bytes())
+        script = str(folder / "clone" / "tools" / "docs" / "make_site.py")
+        zipped = ("--zip", str(made[2]))
+        _run(sys.executable, script, str(folder / "site"), *zipped, PYTHONPATH=str(folder / "clone"))
     sums = out / "SHA256SUMS"
     lines = [f"{hashlib.sha256(path.read_bytes()).hexdigest()}  {path.name}\n" for path in made]
     sums.write_text("".join(lines), encoding="utf-8", newline="\n")

@@ -115,6 +115,7 @@ def test_a_drum_is_shown_over_a_turn_with_its_charts() -> None:
 
 
 @pytest.mark.thin(3)
+@pytest.mark.costly("solids of several turns among them")
 @pytest.mark.parametrize("name", [name for name in TEXTS if not name.endswith("-shortened")])  # it takes its time
 def test_the_solid_of_a_kind_is_closed(name: str) -> None:
     (file,) = live.solid(name, TEXTS[name])["files"]

@@ -12,10 +12,10 @@ from typing import TYPE_CHECKING, NamedTuple, TypeAlias
 
 import numpy as np
 
+from camgeo.capabilities.cylindrical.filling import Run, Sweep
 from camgeo.capabilities.cylindrical.grid import sag, widest
 from camgeo.capabilities.cylindrical.patches import corners_of, line_of, patches_of
 from camgeo.capabilities.cylindrical.sheet import points_of
-from camgeo.capabilities.cylindrical.sweep import Run, Sweep
 from camgeo.files.errors import RegionError
 from camgeo.files.mesh import Mesh, MeshFacts
 from camgeo.files.prism import rounded_loop

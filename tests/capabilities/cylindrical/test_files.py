@@ -448,7 +448,11 @@ def test_remedies_hold(limit: str, words: str, change: tuple[str, str], tmp_path
 
 
 @pytest.mark.parametrize(
-    "name", ["cylindrical", "cylindrical-rib", "cylindrical-end", "cylindrical-arm", "cylindrical-screw"]
+    "name",
+    [
+        *("cylindrical", "cylindrical-rib", "cylindrical-end", "cylindrical-arm"),
+        pytest.param("cylindrical-screw", marks=pytest.mark.costly("crossings of six turns are found")),
+    ],
 )
 def test_starters_are_drums(name: str, tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     assert main(["new", name]) == 0

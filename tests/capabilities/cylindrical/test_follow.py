@@ -64,6 +64,7 @@ def follow(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> Callable[..., 
     return call
 
 
+@pytest.mark.costly("a solid is made and followed at all angles")
 def test_a_groove_gives_its_recipe_back(
     grooved: Path, follow: Callable[..., Any], tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
@@ -99,6 +100,7 @@ def test_other_files_give_it_back(form: str, tolerance: str, tmp_path: Path, fol
     assert np.abs(rows["position_mm"] - (20.0 + LIFT(THETA))).max() < max(told["error"], 0.003)
 
 
+@pytest.mark.slow  # solids are made and followed at all angles
 @pytest.mark.parametrize(
     "case",
     [
@@ -123,6 +125,7 @@ def test_other_tracks_give_theirs_back(
     assert np.abs(rows["position_mm"] - height - LIFT(THETA)).max() < told["error"] < 0.05
 
 
+@pytest.mark.slow  # a solid is made and followed at all angles
 def test_an_arm_on_a_drum_that_turns_the_other_way(tmp_path: Path, follow: Callable[..., Any]) -> None:
     """Swings are degrees; an arm's lengths are those of the call."""
     motion = (
@@ -181,6 +184,7 @@ def radial(
 THETA_FINE = np.arange(1440) * (2.0 * np.pi / 1440)
 
 
+@pytest.mark.slow  # a solid is made and followed at all angles
 def test_radial_walls_pinch_where_they_are_steep(tmp_path: Path, follow: Callable[..., Any]) -> None:
     """By brute force over points of both walls; the roller touches at its inner end, where the groove is too narrow."""
     low, high = radial(tmp_path / "cut.stl", clearance=0.2)
@@ -211,6 +215,7 @@ def test_radial_walls_pinch_where_they_are_steep(tmp_path: Path, follow: Callabl
     assert "the laws that fit best leave" in told["no_programme"]
 
 
+@pytest.mark.slow  # a solid is made and followed at all angles
 def test_where_the_axis_lies_is_asked(tmp_path: Path, follow: Callable[..., Any], capsys: Any) -> None:
     """Beside the origin and above z = 0 it is followed where it lies."""
     radial(tmp_path / "cut.stl")
@@ -269,6 +274,7 @@ def test_options_of_drums_alone(
     assert told in capsys.readouterr().err
 
 
+@pytest.mark.slow  # a solid is made and followed at all angles
 def test_a_turn_that_begins_in_a_stroke_has_a_table(grooved: Path, follow: Callable[..., Any]) -> None:
     told, recipe, _ = follow(grooved, "--drum", "auto", "--roller", "10", "--turn=-60")
     assert "table" in recipe["cam"]["motion"]
@@ -276,6 +282,7 @@ def test_a_turn_that_begins_in_a_stroke_has_a_table(grooved: Path, follow: Calla
     assert remedy == pytest.approx(-150.0, abs=2.0)
 
 
+@pytest.mark.slow  # a solid is made and followed at all angles
 def test_the_page_judges_the_file_by_its_recipe(grooved: Path, tmp_path: Path) -> None:
     words = ("--drum", "auto", "--roller", "10", "--from", "38")
     assert main(["follow", str(grooved), *words, "--page", str(tmp_path / "drum.html")]) == 0

@@ -65,6 +65,7 @@ def drum(tmp_path_factory: pytest.TempPathFactory) -> Flanks:
     return Flanks(ASKED, tmp_path_factory.mktemp("made"))
 
 
+@pytest.mark.costly("points of whole flanks are found from rollers at all angles")
 @pytest.mark.parametrize("text", [PLAY, RIB, TOP], ids=["groove", "rib", "top"])
 def test_its_own_inspection_table_is_right(text: str, tmp_path: Path) -> None:
     own = Flanks(changed(text, ("[stl]", "[{csv: {as: flank, step: 2}}]")) if "[stl]" in text else text, tmp_path)
@@ -74,6 +75,7 @@ def test_its_own_inspection_table_is_right(text: str, tmp_path: Path) -> None:
     assert {ring["flank"] for ring in made["rings"]} == set(own.names)
 
 
+@pytest.mark.costly("points of whole flanks are found from rollers at all angles")
 def test_a_cone_on_an_arm_in_inches(tmp_path: Path) -> None:
     """Of a drum that turns the other way; 0.0004 in too large all round is what each point is off."""
     text = changed(
@@ -134,6 +136,7 @@ def test_shifted_along_its_axis(drum: Flanks) -> None:
     assert "turned about z" not in placed["placing"]
 
 
+@pytest.mark.costly("points of whole flanks are found from rollers at all angles")
 def test_turned(drum: Flanks) -> None:
     """0.1 degrees counter-clockwise; the motion is late by as much, which moves it by S' at the steepest place."""
     angle = math.radians(0.1)

@@ -1,7 +1,7 @@
 """Grooves of several turns, which cross themselves: by pins at positions alone, worked numbers, planted faults.
 
 Holds: camgeo.capabilities.cylindrical.crossings, camgeo.capabilities.cylindrical.patches,
-camgeo.capabilities.cylindrical.sweep, camgeo.capabilities.cylindrical.shoe.
+camgeo.capabilities.cylindrical.filling, camgeo.capabilities.cylindrical.shoe.
 """
 
 from __future__ import annotations
