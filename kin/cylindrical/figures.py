@@ -32,7 +32,7 @@ ACROSS = 33  # places across a roller
 ROUNDS = 7  # of a search for a level place, each 8 times as fine
 CORNERED = 13  # of one for a corner
 WITHIN = 0.999  # of a roller's radius: so far across it contact is looked for
-SECANTS = 60
+SECANTS = 60  # steps to a zero, at most
 
 
 class At(NamedTuple):

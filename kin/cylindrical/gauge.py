@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from kin.cylindrical.led import LedGauge
+from kin.cylindrical.led_gauge import LedGauge
 from kin.cylindrical.lifts import Lifts
 from kin.cylindrical.roller import Gauge
 

@@ -41,7 +41,7 @@ SETTLED = 1e-10  # rad: after a step below this the next would be rounding
 WITHIN = 0.999  # of the roller's radius, within which a point is looked at
 CELLS = 16  # about a point, where peaks are sought by cells
 SMALL, NOTHING = 2e-3, 1e-12  # rad: half a cell that holds one peak at most, and one of which nothing is left
-BESIDE = 0.05  # rad
+BESIDE = 0.05  # rad to both sides of a polar angle, for which a bound of F holds
 
 
 class Stand(NamedTuple):

@@ -40,6 +40,7 @@ import numpy as np
 from kin.cylindrical.edges import Peak
 from kin.cylindrical.grid import FINE
 from kin.numeric.angles import TURN
+from kin.numeric.arrays import runs_of
 from kin.numeric.bernstein import halves, restrict
 from kin.numeric.elementary import cos, sin, sqrt
 from kin.numeric.errors import UnsettledError
@@ -155,8 +156,7 @@ def cells_of(gauge: Gauge, surface: Smooth) -> _Cells:
 
 def _parted(nets: Array, count: Indices) -> tuple[Array, Indices, Array]:
     """Patches parted along their first parameter, each into a number of parts; their own patch, and shares (k, 2)."""
-    own = np.repeat(np.arange(len(nets)), count)
-    step = np.arange(len(own)) - np.repeat(np.cumsum(count) - count, count)
+    own, step = runs_of(count)
     shares = np.stack([step, step + 1], axis=1) / count[own][:, None]
     return restrict(nets[own], shares[:, 0], shares[:, 1]), own, shares
 
@@ -574,8 +574,8 @@ class _Held:
         sense = np.where(last >= first, 1.0, -1.0)
         begin = np.floor(low / width).astype(np.intp)
         count = np.floor(high / width).astype(np.intp) - begin + 1
-        own = np.repeat(np.arange(len(row)), count)
-        bins = begin[own] + np.arange(len(own)) - np.repeat(np.cumsum(count) - count, count)
+        own, step = runs_of(count)
+        bins = begin[own] + step
         over = np.minimum(high[own], (bins + 1) * width) - np.maximum(low[own], bins * width)
         places = row[own] * BINS + bins % BINS
         held, covered = np.full(len(numbers) * BINS, np.inf), np.zeros(len(numbers) * BINS)

@@ -28,7 +28,7 @@ if TYPE_CHECKING:
 WIDTH, LEFT, RIGHT, TOP, FOOT = 420.0, 46.0, 10.0, 8.0, 30.0  # px of a chart, and of its margins
 FIELD = WIDTH - LEFT - RIGHT
 HIGH = 150.0  # px of the map's field
-BEYOND = 0.3  # rad
+BEYOND = 0.3  # rad, by which the path of an axis beside a radius is drawn beyond the turn
 ROUND = 48  # chords of a roller's section
 COLUMNS, ROWS = 180, 16  # cells of the map
 STEPS_OF = (1.0, 2.0, 5.0, 10.0, 15.0)  # degrees from colour to colour
@@ -294,7 +294,7 @@ def _chart(name: str, tall: float, told: str, *parts: str, more: float = 0.0) ->
     return f'<svg id="{name}" class="chart" role="img" aria-label="{told}" viewBox="{box}">{"".join(parts)}</svg>'
 
 
-def keys(design: DrumDesign) -> Sequence[str]:
+def legend(design: DrumDesign) -> Sequence[str]:
     """Sentences that say what the lines of the development are."""
     mm, unit = design.recipe.mm, UNIT_NAMES[design.recipe.units]
     blank, inner = f"{design.recipe.radius / mm:.6g} {unit}", f"{design.recipe.roller.inner / mm:.6g} {unit}"

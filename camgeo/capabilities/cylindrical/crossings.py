@@ -83,7 +83,7 @@ class Corner:
 
 @dataclass(frozen=True, eq=False)
 class Crossing:
-    """Tracks a and b at shaft angles `first` and `second`, rad, whose paths meet; the second is `turns` beyond."""
+    """Tracks a and b at shaft angles `first` and `second`, rad, at which their paths meet, whole turns apart."""
 
     first: float
     second: float

@@ -16,7 +16,7 @@ from camgeo.capabilities.cylindrical.charts import (
     development,
     flat_axis,
     flat_scale,
-    keys,
+    legend,
     limits,
     pressure_map,
 )
@@ -77,7 +77,7 @@ def _asset(name: str) -> str:
 
 def _charts(design: DrumDesign) -> str:
     """Return development and map, side by side where there is room."""
-    note = " ".join(keys(design))
+    note = " ".join(legend(design))
     limit = "Above the limit the colour is that of a failed check. " if limits(design) else ""
     lost = "Violet: lost to undercut. " if design.recipe.shortens else ""
     told = f"Magnitude along the roller's line of contact; the ring is at its greatest. {limit}{lost}".strip()

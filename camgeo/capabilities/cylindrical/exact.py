@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from camgeo.capabilities.cylindrical.design import DrumDesign, in_recipe
-from camgeo.capabilities.cylindrical.refused import demand_sound
+from camgeo.capabilities.cylindrical.soundness import demand_sound
 from kin.law.normalised import IntentError
 
 if TYPE_CHECKING:

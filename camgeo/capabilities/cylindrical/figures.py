@@ -30,7 +30,7 @@ if TYPE_CHECKING:
 MINUTE = 60.0
 MIDDLE, OUTER = f"{PRESSURE_ANGLE}-middle", f"{PRESSURE_ANGLE}-outer"
 ALONG = 9  # places along a line of contact at which a greatest figure is sought
-RADII, PLACES = 24, 24  # of Gauss, over which a volume is integrated
+RADII, PLACES = 24, 24  # of Gauss from floor to blank, and in each part of the turn, over which a volume is integrated
 PARTS = 12  # of a turn, over each of which places of Gauss are taken
 NEWTON = 40  # halvings of the angle at which a flank is touched
 

@@ -49,7 +49,7 @@ if TYPE_CHECKING:
 FLOOR_GAP = 0.5  # mm that a roller stands off the floor where the recipe does not say where it begins
 MOST_RADII = 20  # of one development
 OUTER, PITCH = "outer", "pitch"
-MOST_TURNS = 40
+MOST_TURNS = 40  # of one motion
 APEX = "axis"  # of a cone whose apex is on the drum's axis
 STEEPEST_CONE = 60  # degrees, half angle of a conical roller
 
@@ -484,7 +484,7 @@ def _axes_schema(_: Field) -> Schema:
 
 _AXES: OwnForm[Reader] = OwnForm("a list of axes", "a list of axes such as [X, A]", _read_axes, _axes_schema)
 INVERSE, BY_MINUTE = "inverse-time", "per-minute"
-LEAST_PLACES, MOST_PLACES = 2, 9
+LEAST_PLACES, MOST_PLACES = 2, 9  # decimals that a recipe may ask of a program
 PROGRAM = (
     Field(
         "axes",

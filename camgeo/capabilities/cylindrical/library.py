@@ -40,6 +40,7 @@ FIELDS = {
     RIB: "cam.track.rib.distance",
     LEAST_WALL: "part",
 }
+"""Keys that a check of the exact drum names where it fails."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -127,6 +128,7 @@ def remedy(check: Entry, recipe: DrumRecipe) -> str:
 
 
 OF_SOLIDS = ("volume", "floor", "blank", "ends")
+"""Checks of every solid, beside those of its flanks and its bore."""
 
 
 def foreseen(recipe: DrumRecipe) -> tuple[Foreseen, ...]:

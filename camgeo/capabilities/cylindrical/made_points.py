@@ -17,7 +17,7 @@ from camgeo.schema.quantity import read_quantity
 from camgeo.schema.scalars import Complaint
 from kin.cylindrical.figures import exact_play
 from kin.cylindrical.inspected import read_flank_points
-from kin.cylindrical.made import UNKNOWNS, UnlikeError, made_drum
+from kin.cylindrical.measured_flanks import UNKNOWNS, UnlikeError, made_drum
 from kin.numeric.angles import TURN, degrees
 from kin.numeric.check import Check, at_most
 from kin.numeric.errors import UnsettledError
@@ -32,7 +32,7 @@ if TYPE_CHECKING:
     from camgeo.common.clock import Clock
     from camgeo.output.extension import FileCall
     from kin.cylindrical.intent import DrumIntent
-    from kin.cylindrical.made import MadeDrum, Measured, Ring
+    from kin.cylindrical.measured_flanks import MadeDrum, Measured, Ring
     from kin.numeric.arrays import Array
 
 PROFILE, MOTION = "made-profile", "made-motion"

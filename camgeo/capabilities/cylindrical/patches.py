@@ -32,7 +32,7 @@ if TYPE_CHECKING:
     from kin.numeric.arrays import Array
 
 GUARD = 0.5  # of a column, least width of a cell beside a line
-ROUNDS, MORE_ROWS = 7, 1.5
+ROUNDS, MORE_ROWS = 7, 1.5  # of finer rows, and how many times as many there are in each
 FINER = (1, 2, 3, 4)  # times as many columns beside a line
 BESIDE = 1e-3  # rad to either side of an edge, where a break would leave a sliver
 STEP_SEEN = 1e-9  # of the acceleration's range: a smaller step is none

@@ -46,7 +46,7 @@ SETTING = 0.4  # of the tolerance, that a smaller cutter may be off by where it 
 CHORDS = 0.6  # of what the setting and rounding leave of it, for lines between blocks: the judge's proof takes some
 OVERLAP = math.radians(5.0)  # by which a pass goes on beyond a turn
 ROUNDED = 0.5  # of the tolerance, that words of few decimals may take
-LEAST_PLACES = 3
+FEWEST = 3  # decimals, where a recipe does not ask for a number
 CORNER = 1e-7  # mm per rad: a jump of the velocity below this is rounding
 DIGITS = 4  # of a half angle in a remedy, degrees
 LEAST_ROOM = 0.01  # mm off a flank, below which the cutter goes down on it
@@ -325,7 +325,7 @@ def _rounding(design: DrumDesign, request: FileRequest, count: int, mm: float) -
 def _places(design: DrumDesign, request: FileRequest, tolerance: float, mm: float) -> int:
     """Decimals of the words: as the request states, or as few as take a small share of the tolerance."""
     recipe, stated = design.recipe, request.own.get("decimals")
-    for count in range(LEAST_PLACES if stated is None else stated, MOST_PLACES + 1):
+    for count in range(FEWEST if stated is None else stated, MOST_PLACES + 1):
         limit = (SHARE if stated is None else ROUNDED) * tolerance
         if _rounding(design, request, count, mm) <= limit:
             if stated is not None and count > stated:

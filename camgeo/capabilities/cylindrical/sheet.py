@@ -25,7 +25,8 @@ if TYPE_CHECKING:
 
 FOR_CELLS = 0.8  # of a tolerance: cells at the edge of a cut are wider by SNAP, and the edge is off itself
 SNAP = 0.1  # of a column: a place so near the edge of a cut becomes a point of it
-FIRST_ROWS, MORE_ROWS, LESS, ROUNDS = 12, 1.5, 0.7, 8
+FIRST_ROWS = 12  # on which a cut is known at first
+MORE_ROWS, LESS, ROUNDS = 1.5, 0.7, 8  # times as many rows, and times FOR_CELLS, in each further round
 NEAR_TIP = 1e-6  # of the depth of a cut: rows so near its tip are not cut
 
 

@@ -20,8 +20,8 @@ if TYPE_CHECKING:
     from camgeo.recipe.export import FileRequest
     from kin.numeric.arrays import Array
 
-STEP = math.radians(0.5)
-ORDER = 3
+STEP = math.radians(0.5)  # between rows, where a recipe does not ask for another
+ORDER = 3  # of the highest derivative of the motion
 PLACES = 3  # along a line of contact: its inner end, its middle, its outer end
 SLACK = 1e-9  # of a mm by which a place may lie within what is cut away
 

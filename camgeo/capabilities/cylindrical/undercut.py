@@ -27,11 +27,11 @@ if TYPE_CHECKING:
     from kin.numeric.arrays import Array
 
 SEEK = 2880  # shaft angles of a turn at which an undercut is sought
-DEPTHS = 33  # radii, of which
-HALVINGS = 50
-ZOOMS = 8
+DEPTHS = 33  # radii at which it is sought
+HALVINGS = 50  # of a step between two of these, or of an angle, at which it begins
+ZOOMS = 8  # onto a tip, each to a 24th of the angles before
 ALONG = 400  # places on either branch of a row near its crossing
-NEWTON = 12
+NEWTON = 12  # steps to where a row crosses itself
 STEP = 1e-6  # rad: of a difference quotient for Newton's method, which its result does not depend on
 CELLS, PARTS, ROUNDS, MOST_OPEN = 360, 4, 11, 100_000  # of the proof that a flank is regular
 

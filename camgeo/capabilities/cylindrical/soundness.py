@@ -1,4 +1,4 @@
-"""Drums that are not made: undercut where it is refused or loses motion, and ends that stand within the flank."""
+"""Whether a drum can be made: undercut that is refused, motion that is lost, arms that swing too far, ends in the flank."""
 
 from __future__ import annotations
 
