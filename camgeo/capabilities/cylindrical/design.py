@@ -22,7 +22,7 @@ if TYPE_CHECKING:
     from collections.abc import Callable
 
     from camgeo.capabilities.cylindrical.crossings import Crossing
-    from camgeo.capabilities.cylindrical.keys import DrumRecipe
+    from camgeo.capabilities.cylindrical.drum_recipe import DrumRecipe
     from camgeo.capabilities.cylindrical.sheet import Sheet
     from camgeo.capabilities.cylindrical.undercut import Cut, Tip
     from camgeo.part.shapes import Opening

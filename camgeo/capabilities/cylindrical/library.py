@@ -28,7 +28,7 @@ if TYPE_CHECKING:
     from numpy.typing import ArrayLike
 
     from camgeo.capabilities.cylindrical.design import DrumDesign
-    from camgeo.capabilities.cylindrical.keys import DrumRecipe
+    from camgeo.capabilities.cylindrical.drum_recipe import DrumRecipe
     from camgeo.checks.declaration import Entry
     from camgeo.recipe.export import FileRequest
     from kin.numeric.arrays import Array

@@ -50,23 +50,16 @@ def make(design: DrumDesign, clock: Clock, request: FileRequest, path: Path) -> 
     Raises RecipeErrors where the tolerance cannot be held or no sound file can be made, OSError where it cannot be
     written.
     """
-    recipe, kind = design.recipe, request.kind
-    if kind == "csv":
+    recipe = design.recipe
+    if request.kind == "csv":
         from camgeo.capabilities.cylindrical.tables import write_csv
 
         with clock.stage("table"):
             write_csv(design, request, path)
         return Made(FileResult(path, request, units=UNIT_MM[request.unit_for(recipe.units)]))
     with refusals(recipe, request, partial(in_recipe, recipe)):
-        if kind == "dxf":
-            return _development(design, clock, request, path)
-        if kind == "glb":
-            return _view(design, clock, request, path)
-        if kind == "step":
-            return _surfaces(design, clock, request, path)
-        if request.format.program:
-            return _program(design, clock, request, path)
-        return _mesh(design, clock, request, path)
+        maker = _program if request.format.program else _MAKERS.get(request.kind, _mesh)
+        return maker(design, clock, request, path)
 
 
 def _judged(
@@ -129,3 +122,7 @@ def _program(design: DrumDesign, clock: Clock, request: FileRequest, path: Path)
             design, request, path, design.recipe.tolerance(request), UNIT_MM[request.unit_for(design.recipe.units)]
         )
     return _judged(design, clock, request, path, fit)
+
+
+_MAKERS = {"dxf": _development, "glb": _view, "step": _surfaces}
+"""Makers of files by their formats, beside programs and meshes."""

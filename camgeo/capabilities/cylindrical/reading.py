@@ -5,17 +5,9 @@ from __future__ import annotations
 import math
 from typing import TYPE_CHECKING, Literal
 
+from camgeo.capabilities.cylindrical.drum_recipe import Drive, DrumRecipe, Roller
 from camgeo.capabilities.cylindrical.guide import Arm, Carriage
-from camgeo.capabilities.cylindrical.keys import (
-    APEX,
-    FILES,
-    FLOOR_GAP,
-    NEEDED,
-    RECIPE,
-    Drive,
-    DrumRecipe,
-    Roller,
-)
+from camgeo.capabilities.cylindrical.keys import APEX, FILES, FLOOR_GAP, NEEDED, RECIPE
 from camgeo.capabilities.cylindrical.tracks import End, Groove, Rib
 from camgeo.common.rounding import downward
 from camgeo.motions.motion import check_filled

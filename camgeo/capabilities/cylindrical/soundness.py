@@ -1,4 +1,4 @@
-"""Whether a drum can be made: undercut that is refused, motion that is lost, arms that swing too far, ends in the flank."""
+"""Whether a drum can be made: undercut that is refused, motion that is lost, arms that swing far, ends in the flank."""
 
 from __future__ import annotations
 

@@ -15,8 +15,8 @@ from camgeo.report.page.scene import CONTACTS, SHAFT, STEPS, FilledShape, Moving
 
 if TYPE_CHECKING:
     from camgeo.capabilities.cylindrical.design import DrumDesign
+    from camgeo.capabilities.cylindrical.drum_recipe import DrumRecipe, Roller
     from camgeo.capabilities.cylindrical.flank import Flank
-    from camgeo.capabilities.cylindrical.keys import DrumRecipe, Roller
     from camgeo.capabilities.cylindrical.shells import Shell
     from camgeo.report.page.scene import SceneInput
     from kin.numeric.arrays import Array

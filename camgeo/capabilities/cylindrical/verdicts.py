@@ -21,7 +21,7 @@ if TYPE_CHECKING:
     from pathlib import Path
 
     from camgeo.capabilities.cylindrical.design import DrumDesign
-    from camgeo.capabilities.cylindrical.keys import DrumRecipe
+    from camgeo.capabilities.cylindrical.drum_recipe import DrumRecipe
     from camgeo.recipe.export import FileRequest
     from kin.cylindrical.verdict import DrumVerdict, FlankVerdict
 
