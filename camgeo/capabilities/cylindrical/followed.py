@@ -10,8 +10,7 @@ import numpy as np
 
 from camgeo.common.terminal import escaped
 from camgeo.motions.recognised import MOST_LEFT, STROKES_BEGIN, Recognised
-from kin.follower.measured import MeasuredMotion
-from kin.follower.recognised import recognised
+from kin.follower.recognised import dwells_of, recognised
 from kin.numeric.angles import TURN
 from kin.numeric.feet import equal_steps
 from kin.numeric.records import dataclass, replace
@@ -148,10 +147,7 @@ class FollowedDrum:
     @cached_property
     def rests(self) -> list[MeasuredDwell]:
         """Dwells in the order of the turn."""
-        nothing = np.zeros(len(self.position))
-        rows, ends = np.stack([self.position, nothing, nothing]), (float(self.position.min()), 0.0)
-        motion = MeasuredMotion(self.unit, self.theta, rows, nothing, nothing, ends, (float(self.position.max()), 0.0))
-        return motion.dwells(self.within)
+        return dwells_of(self.position, self.within, self.unit)
 
     @cached_property
     def programme(self) -> Programme | None:
@@ -180,9 +176,8 @@ class FollowedDrum:
         if rows is None:
             rows, why = known.segments()
         if why == STROKES_BEGIN:
-            first = next((rest for rest in self.rests), None)
-            if first is not None:
-                middle = math.degrees(0.5 * (first.begin + first.end))
+            if self.rests:
+                middle = math.degrees(0.5 * (self.rests[0].begin + self.rests[0].end))
                 turned = self.turn + (middle if self.rotation == "ccw" else -middle)
                 why += f": give --turn={math.remainder(turned, 360.0):.6g} to begin in a dwell"
         if rows is None:
