@@ -175,11 +175,10 @@ class FollowedDrum:
         rows, why = rough.segments()
         if rows is None:
             rows, why = known.segments()
-        if why == STROKES_BEGIN:
-            if self.rests:
-                middle = math.degrees(0.5 * (self.rests[0].begin + self.rests[0].end))
-                turned = self.turn + (middle if self.rotation == "ccw" else -middle)
-                why += f": give --turn={math.remainder(turned, 360.0):.6g} to begin in a dwell"
+        if why == STROKES_BEGIN and self.rests:
+            middle = math.degrees(0.5 * (self.rests[0].begin + self.rests[0].end))
+            turned = self.turn + (middle if self.rotation == "ccw" else -middle)
+            why += f": give --turn={math.remainder(turned, 360.0):.6g} to begin in a dwell"
         if rows is None:
             return Segments(None, [], least, why)
         lines = known.lines()
