@@ -55,7 +55,8 @@ class _Over(NamedTuple):
 class LedGauge(Gauge):
     """A roller led by a guide, on a flank; it has its `radius` at the place `at` and grows by `growth` along its axis.
 
-    rim  radius of the blank, mm, which no contact is beyond
+    guide  what leads its axis
+    rim    radius of the blank, mm, which no contact is beyond
     """
 
     guide: Guide

@@ -108,7 +108,10 @@ class Leaning(NamedTuple):
 class Gauge:
     """A roller of `radius`, mm, on a flank on its `side`, its axis at `level` above z = 0 at lift 0.
 
+    name          of the flank: lower or upper
     inner, outer  where it begins and ends along its axis, mm, which counts for the motion alone
+    lifts         the intended motion
+    floor         radius down to which the flank reaches, mm
     """
 
     name: str

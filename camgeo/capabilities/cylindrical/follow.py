@@ -27,6 +27,7 @@ KINDS = ("auto", "groove", "rib", "top", "bottom")
 APEX: Literal["axis"] = "axis"
 STEEPEST = 45.0  # degrees, of a cone's half angle
 UNMOVED = 1e-6  # mm of a lower face that lies at 0
+ACROSS = 2  # coordinates of the place of a drum's axis in its file
 ON_ARM = ("length", "offset", "pivot")
 
 
@@ -77,7 +78,7 @@ def _follow(arguments: argparse.Namespace) -> Drawn:
     record = format_of(path)
     if record.units and arguments.units is not None:
         raise CallError(f"{escaped(str(path))}: the file states its unit itself: leave units out")
-    if len(arguments.at) != len(("x", "y")):
+    if len(arguments.at) != ACROSS:
         raise CallError("at is the place of the drum's axis in the file: two lengths in mm")
     stated = _stated(arguments)
     placed = Placed(arguments.axis, arguments.at, math.radians(arguments.turn), mirrored=arguments.rotation == "ccw")
