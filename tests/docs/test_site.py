@@ -164,6 +164,10 @@ QUERIES = {
     "old drawing": {"follow"},
     "3d printing": {"mechanism", "first-cam"},
     "pressure angle": {"recipe-verify"},
+    "advertised duration": {"engine", "recipe-motion"},
+    "several figures": {"toy"},
+    "probe error": {"made"},
+    "better law": {"follow"},
 }
 
 

@@ -325,8 +325,8 @@ PROGRAMS = {  # the command, and how it tells its version
 }
 HEAD = """# What other people's programs make of the files
 
-Drawings and solids of camgeo were opened in five programs of other people, and each program was made to measure them.
-Solids agree with the exact cam in every program that opens them. Drawings do too, apart from arcs in OpenSCAD:
+Five other programs opened drawings and solids of camgeo and measured them. Solids agree with the exact cam in every
+program that opens them. Drawings do too, apart from arcs in OpenSCAD:
 
 - FreeCAD, LibreCAD and Inkscape read the drawings with their arcs, and FreeCAD reads splines too. FreeCAD 0.20 does
   not open 3MF.
@@ -334,10 +334,9 @@ Solids agree with the exact cam in every program that opens them. Drawings do to
   polygons, and it fills the openings of an SVG. Give it an STL, or a DXF of polylines.
 - PrusaSlicer slices every solid.
 
-In the tables an area is that of the contour in mm^2, for an SVG with its openings subtracted, and a volume is in mm^3.
-`off` is the share by which the figure differs from that of the exact cam; it includes the tolerance of the file and
-the rounding of the program. FreeCAD's area of a face inside one long spline is wrong by up to four percent, so the
-table has the sum over its spans. `python tools/docs/make_outside.py` writes this page.
+Areas of the contour are in mm^2, for an SVG with its openings subtracted; volumes are in mm^3. `off` is the relative
+difference from the exact cam, with the tolerance of the file and the rounding of the program. FreeCAD's area inside one
+long spline is wrong by up to four percent, so the table has the sum over its spans.
 """
 
 

@@ -34,9 +34,8 @@ SOLIDS = ("stl", "step")
 HEAD = """
 ## Each follower of a disc cam
 
-One cam for each follower, as a drawing of arcs, an STL and a STEP. The figure is the share by which the measured area,
-volume or width is off; the area of a ring's contour is that of its opening. admesh, trimesh and ezdxf say whether
-anything needs repair: edges without a partner, facets the wrong way, faults of the drawing.
+The table has one cam for each follower, as a drawing of arcs, an STL and a STEP. Figures are relative differences of
+area, volume or width; of a ring the area is that of its opening. admesh, trimesh and ezdxf look for faults to repair.
 """
 COLUMNS = (
     "FreeCAD DXF, area",
