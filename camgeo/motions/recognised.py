@@ -29,7 +29,7 @@ class Recognised(NamedTuple):
     scale: float
     unit: str
 
-    def told(self, value: float) -> float:
+    def shown(self, value: float) -> float:
         """A displacement, mm or rad, in the unit."""
         return self.scale * value
 
@@ -53,7 +53,7 @@ class Recognised(NamedTuple):
         levels = self.zero + np.array(heights) / self.scale
         left = programme.written(motion, np.radians(angles), levels).greatest
         if left > self.most:
-            return None, f"the laws that fit best leave {self.told(left):.3g} {self.unit}"
+            return None, f"the laws that fit best leave {self.shown(left):.3g} {self.unit}"
         segments: list[Value] = []
         at = 0.0
         for stroke in order:
@@ -80,7 +80,7 @@ class Recognised(NamedTuple):
         """Levels above the zero of displacements, in the unit, rounded by their uncertainty."""
         above = self.programme.levels - self.zero
         pairs = zip(above.tolist(), self.programme.uncertainty[1].tolist(), strict=True)
-        return [roundest(self.told(height), self.told(unsure)) for height, unsure in pairs]
+        return [roundest(self.shown(height), self.shown(unsure)) for height, unsure in pairs]
 
     def lines(self) -> list[str]:
         """Lines of text on each stroke: height, angles and law, with uncertainties."""
@@ -91,9 +91,9 @@ class Recognised(NamedTuple):
             begin = math.remainder(begin, 360.0) if begin > 360.0 - AT_ZERO else begin
             end = begin + (end - begin) % 360.0
             widest = max(math.degrees(unsure[k]) for k in (stroke.first, stroke.last))
-            height = self.told(float(programme.levels[stroke.high] - programme.levels[stroke.low]))
-            off = self.told(float(np.hypot(*(programme.uncertainty[1][k] for k in (stroke.low, stroke.high)))))
-            law = f"{stroke.law} leaves {self.told(stroke.residual):.2g} {self.unit}"
+            height = self.shown(float(programme.levels[stroke.high] - programme.levels[stroke.low]))
+            off = self.shown(float(np.hypot(*(programme.uncertainty[1][k] for k in (stroke.low, stroke.high)))))
+            law = f"{stroke.law} leaves {self.shown(stroke.residual):.2g} {self.unit}"
             if stroke.others:
                 law += f", {', '.join(stroke.others)} hardly more: look at which it was"
             lines.append(

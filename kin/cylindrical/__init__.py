@@ -1,1 +1,1 @@
-"""Cylindrical cams: a translating roller on a groove, a rib or an end of a drum; solids and developments judged."""
+"""Cylindrical cams: files and measured points of a drum are judged, and drums of any origin are followed."""

@@ -10,6 +10,8 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from kin.numeric.arrays import runs_of
+
 if TYPE_CHECKING:
     from kin.cylindrical.roller import Gauge
     from kin.numeric.arrays import Array, Indices
@@ -38,8 +40,8 @@ def set_down(gauge: Gauge, corners: Array, spans: tuple[Array, Array], theta: Ar
             done = int(total[begin - 1]) if begin else 0
             end = max(begin + 1, int(np.searchsorted(total, done + PAIRS, side="right")))
             here = count[begin:end]
-            own = np.repeat(np.arange(begin, end), here)
-            step = np.arange(len(own)) - np.repeat(np.cumsum(here) - here, here)
+            own, step = runs_of(here)
+            own += begin
             at = first[own] + step
             np.maximum.at(best, at, _gives(gauge, corners[own], rising[at]))
             begin = end

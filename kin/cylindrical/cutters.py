@@ -30,6 +30,7 @@ import numpy as np
 
 from kin.cylindrical.turned import Pass
 from kin.numeric.angles import TURN
+from kin.numeric.arrays import runs_of
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Sequence
@@ -162,11 +163,10 @@ def _forwards(one: Pass) -> Pass:
     """A pass with rising angles, its blocks parted so that each is nearly straight as a point sees it."""
     order = slice(None) if one.a[-1] >= one.a[0] else slice(None, None, -1)
     rows = [row[order] for row in (one.a, one.x, one.y)]
-    count = np.maximum(np.ceil(np.diff(rows[0]) / LONGEST), 1.0)
+    count = np.maximum(np.ceil(np.diff(rows[0]) / LONGEST), 1.0).astype(np.intp)
     at = np.arange(len(count) + 1, dtype=np.float64)
-    own = np.repeat(at[:-1], count.astype(np.intp))
-    step = np.arange(len(own)) - np.repeat(np.cumsum(count) - count, count.astype(np.intp))
-    share = np.append(own + step / np.repeat(count, count.astype(np.intp)), at[-1])
+    own, step = runs_of(count)
+    share = np.append(own + step / count[own], at[-1])
     return type(one)(one.line, one.z, *(np.interp(share, at, row) for row in rows))
 
 
@@ -340,13 +340,10 @@ def _over(values: Array | Mask, pick: np.ufunc) -> Array:
 
 
 def _points(gauge: Gauge, theta: Array, rho: Array) -> _Points:
-    """Where the roller touches: n = -sin a e_t + cos a k with (rho + y' + R g) sin a - z' cos a = side y g."""
+    """Where the roller touches, by n = -sin a e_t + cos a k, with derivatives."""
     axis, place, side = gauge.led.axis(*gauge.lifts.at(theta)), rho[:, None], gauge.side
     growth, size = gauge.spread, gauge.size(place)
-    ahead, lag = place + size * growth + axis.y1, side * growth * axis.y
-    square = ahead**2 + axis.z1**2
-    h = np.sqrt(square - lag**2)
-    sine, cosine = (lag * ahead + axis.z1 * h) / square, (ahead * h - lag * axis.z1) / square
+    sine, cosine, h = gauge.leaning(axis, place)
     by_angle = (side * growth * axis.y1 - sine * axis.y2 + cosine * axis.z2) / h
     by_place, reach = -sine * (1.0 + growth**2) / h, side * size
     y, z = axis.y - reach * sine, axis.z + reach * cosine
@@ -393,9 +390,8 @@ def _grid(gauge: Gauge, cutter: _Cutter, askew: _Askew, tolerance: float) -> tup
     bend = bent.sine * (moved.y2 + beside) + bent.cosine * moved.z2 + size * bent.first**2
     bend += lean * (bent.cosine * (moved.y2 + beside) + bent.sine * moved.z2 + size * bent.second)
     second = bend + out * (tilt + cutter.growth)
-    count = np.ceil(np.diff(looks) / np.sqrt(8.0 * ACROSS * tolerance / (speed**2 / nearest + second)))
-    own = np.repeat(np.arange(len(count)), count.astype(np.intp))
-    step = np.arange(len(own)) - np.repeat(np.cumsum(count) - count, count.astype(np.intp))
+    count = np.ceil(np.diff(looks) / np.sqrt(8.0 * ACROSS * tolerance / (speed**2 / nearest + second))).astype(np.intp)
+    own, step = runs_of(count)
     theta = np.append(looks[own] + step * (np.diff(looks) / count)[own], gauge.lifts.period)
     along = (size * bent.along + lean * growth + tilt) ** 2 / nearest + size * bent.along**2
     along += lean * (2.0 * growth * bent.along + size * bent.along_twice)

@@ -17,6 +17,7 @@ from kin.cylindrical.gauge import gauges_of
 from kin.cylindrical.lifts import Lifts
 from kin.cylindrical.verdict import FlankVerdict, MotionError
 from kin.numeric.angles import TURN
+from kin.numeric.arrays import runs_of
 from kin.numeric.check import ROUNDING, Check, at_most, failed
 from kin.numeric.lengths import UNIT, length_words
 from kin.numeric.limits import limit_of
@@ -39,10 +40,8 @@ FINE = 0.05  # of the tolerance, within which what lies between points is known
 MOST = 400_000  # points of a line
 GAP = 1e-6  # of the radius: ends of lines that are so close meet
 SLACK = 1e-6  # of a limit that follows from the steepest slope
-TURNED, MEETINGS = (
-    4096,
-    40,
-)  # angles of a turn at which arms and crossings are looked at; steps to where its axis meets a cylinder
+TURNED = 4096  # angles of a turn, at which it is looked how fast an axis on an arm goes aside
+MEETINGS = 40  # steps to the angle at which an axis on an arm meets a cylinder
 
 
 class _Line(NamedTuple):
@@ -177,8 +176,8 @@ def _laid(parts: list[Array], radius: float, step: float) -> _Line:
     for part in parts:
         angle, height = part[:, 0] / radius, part[:, 1]
         count = np.maximum(np.ceil(np.abs(np.diff(angle)) / step), 1.0).astype(np.intp)
-        own = np.repeat(np.arange(len(count)), count)
-        share = (np.arange(len(own)) - np.repeat(np.cumsum(count) - count, count)) / count[own]
+        own, step_of = runs_of(count)
+        share = step_of / count[own]
         for rows, values in ((phi, angle), (z, height)):
             rows.append(np.append(values[own] + share * np.diff(values)[own], values[-1]))
         joined.append(np.append(np.ones(len(own), dtype=np.bool_), False))

@@ -7,7 +7,7 @@ depth of a point within the roller are greatest values over the angle of functio
     (dy/ds)^2 R^2/(R^2 - y^2)^(3/2)   and   ((dy/ds)^2 + (dz/ds)^2)/R,
 
 so that between two points of an edge they exceed the straight line by an eighth of that (`kin.cylindrical.roller`; of a
-roller on an arm, of a cone and beside the axis what `kin.cylindrical.led` says). What is missing, at any one
+roller on an arm, of a cone and beside the axis what `kin.cylindrical.led_gauge` says). What is missing, at any one
 angle, is greatest at corners of a polygon, for the distance from a straight axis is convex: triangles are cut into
 strips, each with an angle of its own, by straight lines whose ends lie on the edges.
 
@@ -25,6 +25,7 @@ import numpy as np
 
 from kin.cylindrical.grid import FINE, Grid
 from kin.cylindrical.within import holding
+from kin.numeric.arrays import runs_of
 from kin.numeric.errors import UnsettledError
 from kin.numeric.records import dataclass
 
@@ -204,8 +205,7 @@ class _Look:
         flank, reached, walled = self.flank[rows], self.reached[rows], self.walled[rows]
         start, way = self.points[a], self.points[b] - self.points[a]
         begin = self.worst.theta[a]
-        own = np.repeat(np.arange(len(a)), count)
-        step = np.arange(len(own)) - np.repeat(np.cumsum(count) - count, count)
+        own, step = runs_of(count)
         k = first[own] + step
         theta = width * k.astype(np.float64)
         share = np.clip((theta - begin[own]) / np.maximum(turned[own], 1e-300), 0.0, 1.0)

@@ -15,10 +15,9 @@ from kin.contour.arcs import Arcs
 from kin.contour.holes import farthest
 from kin.cylindrical.crossings import Crossings
 from kin.cylindrical.edges import Peak
-from kin.cylindrical.faces import BLANK, BORE, BOTTOM, FINE, FLOOR, TOP, Body, Faces, Stands
+from kin.cylindrical.faces import BLANK, BORE, BOTTOM, FINE, FLOOR, TOP
 from kin.cylindrical.figures import exact_play
 from kin.cylindrical.gauge import gauges_of
-from kin.cylindrical.intent import Groove
 from kin.cylindrical.judge import (
     CONTOUR,
     MOTION,
@@ -31,12 +30,12 @@ from kin.cylindrical.judge import (
     play_check,
     volume_check,
 )
-from kin.cylindrical.roller import Worst
 from kin.cylindrical.smooth import Smooth, look, off_flank
 from kin.cylindrical.verdict import DrumVerdict, FlankVerdict, MotionError
 from kin.numeric.angles import TURN, degrees
 from kin.numeric.check import ROUNDING, Check, about, failed
 from kin.numeric.errors import UnsettledError
+from kin.numeric.feet import equal_steps
 from kin.numeric.records import dataclass, replace
 from kin.read.checks import count_check, unread_check
 from kin.read.errors import ReadError
@@ -96,12 +95,8 @@ def judge_shell(shell: Shell, drum: DrumIntent, limits: Limits, kind: str = "") 
     slack = ROUNDING * max(drum.radius, drum.length)
     try:
         found = _sorted(shell, drum, gauges, limits.tolerance)
-        none, nothing = np.empty(0, dtype=np.bool_), Worst(*(np.empty(0) for _ in range(4)))
-        body = Body(np.empty((0, 3)), np.empty((0, 3), dtype=np.intp))
-        stands = tuple(Stands(gauge, body, none, none, nothing, none, none) for gauge in gauges)
-        kinds = Faces((), np.empty(0, dtype=np.intp), found.off, stands)
-        job = Judged(body, kinds, drum, limits, slack)
-        checks += plain_checks(job)
+        job = Judged(gauges, drum, limits, slack)
+        checks += plain_checks(job, found.off)
         for gauge in gauges:
             flank, own_seen, own = _flank(job, gauge, found.flanks[gauge.name])
             verdicts.append(flank)
@@ -110,22 +105,14 @@ def judge_shell(shell: Shell, drum: DrumIntent, limits: Limits, kind: str = "") 
         both = [each for each, flank in zip(seen, verdicts, strict=True) if each is not None and flank.motion]
         if len(both) > 1:
             pinched = both[0].holds + both[1].holds
-            free = _own_play(drum, ANGLES) - pinched
-            play, check = play_check(job, pinched, free, np.arange(ANGLES) * np.float64(TURN / ANGLES))
+            theta = equal_steps(ANGLES)
+            play, check = play_check(job, pinched, exact_play(drum, theta) - pinched, theta)
             checks.append(check)
         checks += led_checks(Crossings(drum, gauges, limits.tolerance))
         checks.append(volume_check(drum, gauges, (shell.volume, shell.area), limits.tolerance))
     except UnsettledError as error:
         checks.append(failed(CONTOUR, str(error), unit="mm", limit=limits.tolerance))
     return DrumVerdict(kind, tuple(checks), tuple(verdicts), play, shell.units_mm)
-
-
-def _own_play(drum: DrumIntent, angles: int) -> Array:
-    """Play (n,), mm, of the follower between exact flanks at equal steps."""
-    theta = np.asarray(np.arange(angles) * (TURN / angles), dtype=np.float64)
-    if not (isinstance(drum.track, Groove) and drum.track.clearance):
-        return np.zeros(angles)
-    return exact_play(drum, theta)
 
 
 def _flank(

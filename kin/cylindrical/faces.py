@@ -18,7 +18,6 @@ from kin.contour.arcs import Arcs
 from kin.contour.holes import farthest
 from kin.contour.nearest import nearest
 from kin.cylindrical.edges import Edges
-from kin.cylindrical.intent import End
 from kin.cylindrical.roller import BESIDE, Place, Worst
 from kin.numeric.angles import TURN
 from kin.numeric.arrays import paired
@@ -284,10 +283,10 @@ def _plain(body: Body, drum: DrumIntent) -> dict[str, Array]:
     if track.depth is not None:
         faces[FLOOR] = np.abs(r - drum.floor)
     # an end whose flank goes down to the bore takes the place of a level one
-    whole = isinstance(track, End) and track.depth is None
-    if not (whole and isinstance(track, End) and track.facing == "bottom"):
+    whole = track.depth is None
+    if not (whole and track.sides[0] > 0):
         faces[BOTTOM] = np.abs(z)
-    if not (whole and isinstance(track, End) and track.facing == "top"):
+    if not (whole and track.sides[0] < 0):
         faces[TOP] = np.abs(z - drum.length)
     if drum.bore is not None:
         arcs = drum.bore.contour.as_arcs()[0]

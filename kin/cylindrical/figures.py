@@ -13,7 +13,6 @@ import numpy as np
 
 from kin.cylindrical.frame import On, place_jets, pressure_jet, rates, regularity_jet
 from kin.cylindrical.gauge import gauges_of
-from kin.cylindrical.intent import Groove, Rib
 from kin.numeric.angles import TURN
 from kin.numeric.extrema import extremes_over
 from kin.numeric.records import replace
@@ -33,7 +32,7 @@ ACROSS = 33  # places across a roller
 ROUNDS = 7  # of a search for a level place, each 8 times as fine
 CORNERED = 13  # of one for a corner
 WITHIN = 0.999  # of a roller's radius: so far across it contact is looked for
-SECANTS = 60
+SECANTS = 60  # steps to a zero, at most
 
 
 class At(NamedTuple):
@@ -132,8 +131,7 @@ def least_regularity(
 def undercut(drum: DrumIntent, side: Side = -1) -> Undercut:
     """Where a drum's flank is undercut, from its floor outwards, and the length of contact that is left."""
     follower = drum.follower
-    clearance = drum.track.clearance if isinstance(drum.track, Groove) and side > 0 else 0.0
-    beside = -0.5 * side * drum.track.distance if isinstance(drum.track, Rib) else 0.0
+    clearance, beside = drum.track.larger(side), drum.track.beside(side)
 
     def least(rho: float) -> At:
         return least_regularity(follower, rho, side, clearance, beside)
@@ -213,8 +211,8 @@ def _least_across(function: Callable[[Array], Array], gauge: Gauge, theta: Array
 
 def rib_thickness(drum: DrumIntent) -> Thickness:
     """Least thickness of a rib along z between its floor and the blank; raises ValueError for another track."""
-    if not isinstance(drum.track, Rib):
-        raise ValueError("the track is no rib")  # noqa: TRY004 - the drum is of the right type
+    if not drum.track.distance:
+        raise ValueError("the track is no rib")
     upper, lower = gauges_of(drum)
     best = Thickness(math.inf, math.nan, math.nan)
     for radius in (drum.floor, drum.radius):
@@ -246,10 +244,10 @@ def _least_place(function: Callable[[Array], Array], period: float, angles: int 
 def exact_play(drum: DrumIntent, theta: Array) -> Array:
     """Travel (n,), mm or rad, of the follower between exact flanks at shaft angles (n,), rad, cam at rest.
 
-    In a groove the roller goes up until it meets the upper flank, which it does at one of its ends, or where the blank
-    ends there; elsewhere there is no play.
+    In a groove with a clearance the roller goes up until it meets the upper flank, which it does at one of its ends, or
+    where the blank ends there; elsewhere there is no play.
     """
-    if not isinstance(drum.track, Groove):
+    if not drum.track.clearance:
         return np.zeros(len(theta))
     _, upper = gauges_of(drum)
     roller = replace(upper, radius=drum.follower.radius)

@@ -4,8 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from kin.cylindrical.intent import Groove, Rib
-from kin.cylindrical.led import LedGauge
+from kin.cylindrical.led_gauge import LedGauge
 from kin.cylindrical.lifts import Lifts
 from kin.cylindrical.roller import Gauge
 
@@ -20,16 +19,11 @@ def gauges_of(drum: DrumIntent) -> tuple[Gauge, ...]:
     lifts = Lifts(own.law, own.turns)
     floor = drum.floor
 
-    def gauge(side: Side, beside: float = 0.0, clearance: float = 0.0) -> Gauge:
-        name = "lower" if side < 0 else "upper"
-        common = (name, side, own.radius + clearance, own.level + beside, own.inner, own.outer, lifts, floor)
+    def gauge(side: Side) -> Gauge:
+        name, beside = ("lower" if side < 0 else "upper"), track.beside(side)
+        common = (name, side, own.radius + track.larger(side), own.level + beside, own.inner, own.outer, lifts, floor)
         if own.arm is None and not own.offset and not own.taper:
             return Gauge(*common)
         return LedGauge(*common, own.guide(beside), own.growth, own.at or 0.0, drum.radius)
 
-    if isinstance(track, Groove):
-        return gauge(-1), gauge(1, clearance=track.clearance)
-    if isinstance(track, Rib):
-        half = 0.5 * track.distance
-        return gauge(-1, half), gauge(1, -half)
-    return (gauge(-1 if track.facing == "top" else 1),)
+    return tuple(gauge(side) for side in track.sides)

@@ -8,7 +8,7 @@ of the blank, however long the roller is.
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Literal, TypeAlias
+from typing import TYPE_CHECKING, Literal
 
 import numpy as np
 
@@ -18,10 +18,32 @@ from kin.numeric.records import dataclass
 if TYPE_CHECKING:
     from kin.contour.holes import Hole
     from kin.cylindrical.follower import DrumFollower
+    from kin.law.contacts import Side
+
+
+class Track:
+    """What leads a roller: `clearance` makes the roller of the upper flank larger, `distance` is that of two, mm."""
+
+    depth: float | None
+    clearance: float = 0.0
+    distance: float = 0.0
+
+    @property
+    def sides(self) -> tuple[Side, ...]:
+        """Sides of the roller on which the flanks lie, the lower flank first: -1 below it, 1 above."""
+        return (-1, 1)
+
+    def beside(self, side: Side) -> float:
+        """How far upwards, mm, the roller of a flank on its side is beside the middle of both: half their distance."""
+        return -0.5 * side * self.distance
+
+    def larger(self, side: Side) -> float:
+        """By how much, mm, the roller of a flank on its side is larger than the drum's own."""
+        return self.clearance if side > 0 else 0.0
 
 
 @dataclass(frozen=True)
-class Groove:
+class Groove(Track):
     """A groove of a `depth`, mm, between two flanks, for one roller.
 
     The lower flank is that of the roller, the upper flank that of a roller larger by `clearance`, mm, on the same axis,
@@ -33,7 +55,7 @@ class Groove:
 
 
 @dataclass(frozen=True)
-class Rib:
+class Rib(Track):
     """A rib of a `depth`, mm, between two rollers whose axes are a `distance`, mm, apart along z, or square to an arm.
 
     Its upper face is the lower flank of the roller at distance/2 above the level, its lower face the upper flank of
@@ -45,7 +67,7 @@ class Rib:
 
 
 @dataclass(frozen=True)
-class End:
+class End(Track):
     """An end cam: one flank, on which a spring holds the roller.
 
     facing  "top": the metal is below, the flank takes the place of the upper end; "bottom": the metal is above
@@ -55,8 +77,10 @@ class End:
     facing: Literal["top", "bottom"] = "top"
     depth: float | None = None
 
-
-Track: TypeAlias = Groove | Rib | End
+    @property
+    def sides(self) -> tuple[Side, ...]:
+        """Side of the roller on which the one flank lies: -1 below it, 1 above."""
+        return (-1,) if self.facing == "top" else (1,)
 
 
 @dataclass(frozen=True, eq=False)

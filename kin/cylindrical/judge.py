@@ -27,7 +27,7 @@ from kin.cylindrical.lifts import degrees_over
 from kin.cylindrical.roller import Worst
 from kin.cylindrical.shoe import shoe_interference
 from kin.cylindrical.split import joined
-from kin.cylindrical.torn import missing, triangles_at
+from kin.cylindrical.torn_edges import missing, triangles_at
 from kin.cylindrical.verdict import DrumVerdict, FlankVerdict, MotionError, Play
 from kin.cylindrical.volume import volume_within
 from kin.numeric.angles import degrees
@@ -42,12 +42,11 @@ from kin.read.files import read_mesh
 from kin.read.formats import format_of
 
 if TYPE_CHECKING:
-    from collections.abc import Sequence
+    from collections.abc import Mapping, Sequence
     from pathlib import Path
 
     from kin.cylindrical.edges import Peak, Seen
-    from kin.cylindrical.faces import Faces, Stands
-    from kin.cylindrical.follower import DrumFollower
+    from kin.cylindrical.faces import Stands
     from kin.cylindrical.guide import Unit
     from kin.cylindrical.intent import Developed, DrumIntent, Limits
     from kin.cylindrical.roller import Gauge
@@ -111,13 +110,12 @@ def verify_development(
 
 @dataclass(frozen=True, eq=False)
 class Judged:
-    """A body being judged: its faces, the intent, the limits, and the rounding of the file's places, `slack`, mm.
+    """A file being judged: what it is held against, by which gauges, and the rounding of its places, `slack`, mm.
 
     Positions are mm along the path of the roller's axis; `told` gives them in the follower's unit, mm or deg.
     """
 
-    body: Body
-    faces: Faces
+    gauges: tuple[Gauge, ...]
     drum: DrumIntent
     limits: Limits
     slack: float
@@ -130,7 +128,7 @@ class Judged:
     @cached_property
     def told(self) -> float:
         """One mm of travel in the unit of positions."""
-        return in_unit(self.drum.follower, self.faces.stands[0].gauge)
+        return self.drum.follower.told(1.0) / self.gauges[0].lever
 
 
 def judge_mesh(read: CheckedMesh, drum: DrumIntent, limits: Limits, kind: str = "") -> DrumVerdict:
@@ -147,8 +145,8 @@ def judge_mesh(read: CheckedMesh, drum: DrumIntent, limits: Limits, kind: str = 
         for gauge in gauges:
             gauge.demand_bounded()
         faces = faces_of(body, drum, gauges, limits.tolerance + slack)
-        job = Judged(body, faces, drum, limits, slack)
-        checks += plain_checks(job)
+        job = Judged(gauges, drum, limits, slack)
+        checks += plain_checks(job, faces.off)
         angles = angles_for(gauges, limits.tolerance)
         crossings = Crossings(drum, gauges, limits.tolerance + slack)
         held = [crossings.carried(gauge, angles) for gauge in gauges]
@@ -159,7 +157,7 @@ def judge_mesh(read: CheckedMesh, drum: DrumIntent, limits: Limits, kind: str = 
             checks += [replace(check, surface=flank.name) for check in own]
         both = [found for found, flank in zip(seen, verdicts, strict=True) if found is not None and flank.motion]
         if len(both) > 1 and np.logical_and(*held).any():
-            play, check = _play(job, both, np.logical_and(*held))
+            play, check = _play(job, faces.stands, both, np.logical_and(*held))
             checks.append(check)
         checks += led_checks(crossings)
         area = 0.5 * float(np.sqrt(sum(part * part for part in read.mesh.area_vectors)).sum())
@@ -187,9 +185,9 @@ def positions(read: CheckedMesh, drum: DrumIntent, theta: Array) -> tuple[Array,
     return found["lower"], found["upper"]
 
 
-def plain_checks(job: Judged) -> list[Check]:
-    """Checks of blank, floor, ends and bore."""
-    off, drum, tolerance = job.faces.off, job.drum, job.limits.tolerance
+def plain_checks(job: Judged, off: Mapping[str, float]) -> list[Check]:
+    """Checks of blank, floor, ends and bore, by how far each is off, mm: nan of one that is not there."""
+    drum, tolerance = job.drum, job.limits.tolerance
     checks = []
 
     def check(name: str, worst: float, detail: str) -> None:
@@ -269,11 +267,6 @@ def contour_check(job: Judged, proud: Peak, bare: Peak) -> tuple[Check, float]:
     return placed(check, proud.at if proud.value >= bare.value else bare.at, job.drum.follower.turns), worst
 
 
-def in_unit(follower: DrumFollower, gauge: Gauge) -> float:
-    """One mm of travel of a follower's roller in the unit of its positions."""
-    return follower.told(1.0) / gauge.lever
-
-
 def _motion_error(seen: Seen, held: Mask, job: Judged, gauge: Gauge) -> MotionError:
     """Error of the motion at the angles of the grid (n,) at which the flank is to carry the roller."""
     told = job.told
@@ -351,9 +344,8 @@ def _held(job: Judged, stands: Stands, seen: Seen) -> Array:
     return look(gauge, edges, job.limits.tolerance, len(seen.grid)).holds
 
 
-def _play(job: Judged, both: Sequence[Seen], held: Mask) -> tuple[Play, Check]:
+def _play(job: Judged, stands: Sequence[Stands], both: Sequence[Seen], held: Mask) -> tuple[Play, Check]:
     """Play at the angles of the grid (n,) at which both flanks are to carry the roller."""
-    stands = job.faces.stands
     own = [_held(job, one, found)[held] for one, found in zip(stands, both, strict=True)]
     theta = np.flatnonzero(held) * np.float64(both[0].grid.width)
     return play_check(job, (both[0].holds + both[1].holds)[held], -(own[0] + own[1]), theta)
@@ -364,15 +356,14 @@ def play_check(job: Judged, pinched: Array, own: Array, theta: Array) -> tuple[P
 
     `pinched` is by how much the gauges do not fit, and `own` the follower's own play (n,), mm, at angles (n,), rad.
     """
-    stands = job.faces.stands
     k = int(np.argmax(np.abs(pinched)))
     own = own * job.told
     least, most = int(np.argmin(own)), int(np.argmax(own))
-    places = [stands[0].gauge.lifts.degrees(float(theta[k])) for k in (least, most)]
+    places = [job.gauges[0].lifts.degrees(float(theta[k])) for k in (least, most)]
     play = Play(float(own[least]), places[0], float(own[most]), places[1], len(own), job.unit)
 
     def implied(tolerance: float) -> float:
-        return job.told * sum(_implied(one.gauge, tolerance) for one in stands)
+        return job.told * sum(_implied(gauge, tolerance) for gauge in job.gauges)
 
     limit, room = limit_of(implied, _given(job, job.limits.play), job.limits.tolerance, job.slack)
     told = f"the follower's own play is {_between(play)}"

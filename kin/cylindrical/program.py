@@ -18,14 +18,13 @@ import numpy as np
 
 from kin.cylindrical.cutters import END, left_on
 from kin.cylindrical.gauge import gauges_of
-from kin.cylindrical.intent import Groove, Rib
-from kin.cylindrical.judge import CONTOUR, MOTION, SLACK, assured, in_unit
+from kin.cylindrical.intent import Groove
+from kin.cylindrical.judge import CONTOUR, Judged, assured, motion_check
 from kin.cylindrical.turned import passes_of, read_turned
 from kin.cylindrical.verdict import DrumVerdict, FlankVerdict, MotionError
 from kin.numeric.check import ROUNDING, Check, about, at_most, failed
 from kin.numeric.errors import UnsettledError
-from kin.numeric.lengths import UNIT, amount_words, length_words
-from kin.numeric.limits import is_loose, limit_of, unlimited
+from kin.numeric.lengths import UNIT, length_words
 from kin.numeric.records import dataclass, replace
 from kin.read.checks import count_check, unread_check
 from kin.read.errors import ReadError
@@ -127,8 +126,9 @@ def judged_passes(
         checks.append(_cleared(passes, drum, cutting.radius))
     flanks = []
     try:
-        for gauge in gauges_of(drum):
-            flank, own = _flank(gauge, passes, drum, cutting, limits)
+        job = Judged(gauges_of(drum), drum, limits, ROUNDING * (drum.radius + drum.length))
+        for gauge in job.gauges:
+            flank, own = _flank(job, gauge, passes, cutting)
             flanks.append(flank)
             checks += [replace(check, surface=gauge.name) for check in own]
     except UnsettledError as error:
@@ -139,11 +139,9 @@ def judged_passes(
 # --- what is left -----------------------------------------------------------------------------------------------------
 
 
-def _flank(
-    gauge: Gauge, passes: list[Pass], drum: DrumIntent, cutting: Cutting, limits: Limits
-) -> tuple[FlankVerdict, list[Check]]:
-    tolerance, told = limits.tolerance, in_unit(drum.follower, gauge)
-    slack = ROUNDING * (drum.radius + drum.length)
+def _flank(job: Judged, gauge: Gauge, passes: list[Pass], cutting: Cutting) -> tuple[FlankVerdict, list[Check]]:
+    """Verdict on a flank by what the cutter leaves of it, and its checks."""
+    drum, tolerance = job.drum, job.limits.tolerance
 
     def unknown(why: str) -> tuple[FlankVerdict, list[Check]]:
         return FlankVerdict(gauge.name), [failed(CONTOUR, why, unit="mm", limit=tolerance)]
@@ -159,7 +157,7 @@ def _flank(
             return unknown(
                 "of a flank with a cut or a corner, what a cutter smaller than the roller leaves is not known"
             )
-        return _by_path(gauge, passes, drum, cutting, limits)
+        return _by_path(job, gauge, passes, cutting)
     whole = replace(gauge, outer=drum.radius)
     left = left_on(whole, passes, cutting.radius, COARSE * tolerance, cutting.growth)
     if left is None or _extremes(left)[0] <= FAR * tolerance:
@@ -174,9 +172,12 @@ def _flank(
     words = f"{length_words(most, '.3g')} {UNIT} left and {length_words(least, '.3g')} {UNIT} too deep"
     detail = f"{words}; true within {length_words(remainder, '.2g')} {UNIT}"
     value = worst if worst > tolerance else assured(worst, remainder, tolerance)
-    check = replace(at_most(CONTOUR, value, tolerance, "mm", detail=detail, slack=slack), at=_angle(at))
-    motion = _motion(gauge, left, told, drum.follower.unit)
-    return FlankVerdict(gauge.name, motion, worst), [check, _motion_check(motion, gauge, drum, limits, slack)]
+    check = replace(at_most(CONTOUR, value, tolerance, "mm", detail=detail, slack=job.slack), at=_angle(at))
+    motion = _motion(gauge, left, job.told, job.unit)
+    return FlankVerdict(gauge.name, motion, worst), [
+        check,
+        motion_check(job, motion, gauge),
+    ]
 
 
 def _angle(theta: float) -> float:
@@ -220,29 +221,14 @@ def upright_at(gauge: Gauge, theta: Array, rho: Array) -> Array:
     """Cosine of the angle between the flank's normal and the roller's path, at angles and places along it."""
     rows = gauge.lifts.at(theta)
     axis, way = gauge.led.axis(*rows), gauge.led.axis(rows[0], np.ones_like(theta), np.zeros_like(theta))
-    ahead, lag = rho + gauge.size(rho) * gauge.spread + axis.y1, gauge.side * gauge.spread * axis.y
-    square = ahead**2 + axis.z1**2
-    h = np.sqrt(square - lag**2)
-    sine, cosine = (lag * ahead + axis.z1 * h) / square, (ahead * h - lag * axis.z1) / square
+    sine, cosine, _ = gauge.leaning(axis, rho)
     upright: Array = (cosine * way.z1 - sine * way.y1) / (gauge.lever * math.hypot(1.0, gauge.spread))
     return upright
 
 
-def _motion_check(motion: MotionError, gauge: Gauge, drum: DrumIntent, limits: Limits, slack: float) -> Check:
-    told, given = in_unit(drum.follower, gauge), None if limits.motion is None else drum.follower.told(limits.motion)
-    limit, room = limit_of(lambda e: told * gauge.by_error(e) * (1.0 + SLACK), given, limits.tolerance, slack)
-    worst = assured(motion.max, motion.remainder, told * limits.tolerance) if given is None else motion.bound
-    detail = f"true within {amount_words(motion.remainder, motion.unit, '.2g')}" if motion.remainder else ""
-    check = replace(at_most(MOTION, worst, limit, motion.unit, detail=detail, slack=room), at=motion.at)
-    stroke = drum.follower.told(gauge.lifts.stroke)
-    return unlimited(check) if given is None and is_loose(limit, told * limits.tolerance, lambda: stroke) else check
-
-
-def _by_path(
-    gauge: Gauge, passes: list[Pass], drum: DrumIntent, cutting: Cutting, limits: Limits
-) -> tuple[FlankVerdict, list[Check]]:
+def _by_path(job: Judged, gauge: Gauge, passes: list[Pass], cutting: Cutting) -> tuple[FlankVerdict, list[Check]]:
     """A flank by the paths of cutters as large as its roller: what they cut is off by no more than they are."""
-    tolerance, slack = limits.tolerance, ROUNDING * (drum.radius + drum.length)
+    drum, tolerance = job.drum, job.limits.tolerance
     own = [one for one in passes if _is_about(one, gauge)]
     whole = [one for one in own if one.z <= gauge.inner + END and float(np.ptp(one.a)) >= gauge.lifts.period - SAME]
     if not whole:
@@ -256,15 +242,18 @@ def _by_path(
     worst, at = max(errors)
     detail = f"by its path, which is off by {length_words(worst, '.3g')} {UNIT} along the drum"
     most = math.hypot(worst, beside) + remainder + beyond
-    check = replace(at_most(CONTOUR, most, tolerance, "mm", detail=detail, slack=slack), at=_angle(at))
+    check = replace(at_most(CONTOUR, most, tolerance, "mm", detail=detail, slack=job.slack), at=_angle(at))
     least, most = min(each.least for each in off), max(each.most for each in off)
     least, most = (least, most) if gauge.side < 0 else (-most, -least)
-    told, unit = in_unit(drum.follower, gauge), drum.follower.unit
+    told = job.told
     # what is off across the roller's path, or too wide, moves it by no more than a flank that is off by as much
     by_flank = gauge.by_error(beside + remainder + beyond) if beside + remainder + beyond else 0.0
     rms = told * max(abs(least), abs(most))
-    motion = MotionError(told * worst, _angle(at), told * by_flank, told * least, told * most, rms, unit)
-    return FlankVerdict(gauge.name, motion, worst), [check, _motion_check(motion, gauge, drum, limits, slack)]
+    motion = MotionError(told * worst, _angle(at), told * by_flank, told * least, told * most, rms, job.unit)
+    return FlankVerdict(gauge.name, motion, worst), [
+        check,
+        motion_check(job, motion, gauge),
+    ]
 
 
 def _is_about(one: Pass, gauge: Gauge) -> bool:
@@ -370,7 +359,7 @@ def _ways(program: TurnedProgram, passes: Sequence[Pass], drum: DrumIntent) -> C
     ends = np.array([(*move.start, *move.end) for move in low]).reshape(-1, 4)
     deep = np.maximum(ends[:, 2], drum.floor)
     within = [gauge.size(deep) - gauge.side * (ends[:, 0] - gauge.axis(ends[:, 3])) > 0.0 for gauge in gauges_of(drum)]
-    free = np.any(within, axis=0) if isinstance(drum.track, Rib) else np.all(within, axis=0)
+    free = np.any(within, axis=0) if drum.track.distance else np.all(within, axis=0)
     if not free.all():
         bad.append(f"line {low[int(np.argmin(free)) // 2].line} stands in the metal")
     return count_check("ways", bad)

@@ -29,7 +29,7 @@ from kin.numeric.records import dataclass
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
-    from kin.cylindrical.guide import Guide
+    from kin.cylindrical.guide import Axis, Guide
     from kin.cylindrical.lifts import Lifts
     from kin.law.contacts import Side
     from kin.numeric.arrays import Array, Indices, Mask
@@ -41,7 +41,7 @@ SETTLED = 1e-10  # rad: after a step below this the next would be rounding
 WITHIN = 0.999  # of the roller's radius, within which a point is looked at
 CELLS = 16  # about a point, where peaks are sought by cells
 SMALL, NOTHING = 2e-3, 1e-12  # rad: half a cell that holds one peak at most, and one of which nothing is left
-BESIDE = 0.05  # rad
+BESIDE = 0.05  # rad to both sides of a polar angle, for which a bound of F holds
 
 
 class Stand(NamedTuple):
@@ -96,19 +96,22 @@ class Worst(NamedTuple):
     bend: Array
 
 
-class Course(NamedTuple):
-    """What leads a roller, and its radius, mm: `base` at the cam's axis, growing by `growth` along the roller."""
+class Leaning(NamedTuple):
+    """Sine and cosine of a contact's angle a against z, towards -e_t, and h = cos a A + sin a z', mm."""
 
-    guide: Guide
-    base: float
-    growth: float
+    sine: Array
+    cosine: Array
+    h: Array
 
 
 @dataclass(frozen=True, eq=False)
 class Gauge:
     """A roller of `radius`, mm, on a flank on its `side`, its axis at `level` above z = 0 at lift 0.
 
+    name          of the flank: lower or upper
     inner, outer  where it begins and ends along its axis, mm, which counts for the motion alone
+    lifts         the intended motion
+    floor         radius down to which the flank reaches, mm
     """
 
     name: str
@@ -134,15 +137,18 @@ class Gauge:
         """Radius of the roller, mm, at places along it, mm."""
         return self.radius + 0.0 * along
 
+    def leaning(self, axis: Axis[Array], along: Array) -> Leaning:
+        """Where the roller touches at places along it, mm: A sin a - z' cos a = side y g, A = along + y' + R g."""
+        growth, size = self.spread, self.size(along)
+        ahead, lag = along + size * growth + axis.y1, self.side * growth * axis.y
+        square = ahead**2 + axis.z1**2
+        h = np.sqrt(square - lag**2)
+        return Leaning((lag * ahead + axis.z1 * h) / square, (ahead * h - lag * axis.z1) / square, h)
+
     @property
     def lever(self) -> float:
         """Travel of the roller's axis, mm, for one of the motion."""
         return 1.0
-
-    @property
-    def course(self) -> Course:
-        """What leads the roller, and its radius along it."""
-        return Course(Slide(0.0, self.level), self.radius, 0.0)
 
     @property
     def reach(self) -> float:

@@ -40,6 +40,7 @@ if TYPE_CHECKING:
     from kin.numeric.arrays import Array, Indices, Mask
 
 Kind = Literal["groove", "rib", "top", "bottom"]
+ENDS: tuple[Kind, ...] = ("top", "bottom")
 
 LOOKS = 2880  # lines along the axis, over a turn
 STEPS = 720  # angles at which the roller is set down
@@ -54,7 +55,7 @@ ASIDE = 0.02  # of the roller's radius, by which a guess may put it aside
 SPREAD = 3  # steps to both sides, over which a slope is taken
 
 
-class Asked(NamedTuple):
+class StatedRoller(NamedTuple):
     """What is known of the roller: lengths mm.
 
     `inner` and `outer` are where it bears along its axis, None for the floor and GAP, and for the blank. A cone by
@@ -98,6 +99,11 @@ class Run:
     error: float
     distance: float | None = None
 
+    @property
+    def closed(self) -> bool:
+        """Whether flanks hold the follower to both sides; else it is pressed on an end face."""
+        return self.kind not in ENDS
+
 
 class _Track(NamedTuple):
     """A track by the heights of its lower and upper flank, mm, at lines along the axis (n,); nan without a flank.
@@ -110,51 +116,51 @@ class _Track(NamedTuple):
     upper: Array
 
 
-def run(drum: Drum, asked: Asked) -> Run:
+def run(drum: Drum, stated: StatedRoller) -> Run:
     """Let a roller run on a drum over the turn.
 
     Raises UnknownError where no track is found, or several; where there is no floor, and where the roller touches
     nothing or metal stands in its way.
     """
-    outer = drum.radius if asked.outer is None else asked.outer
+    outer = drum.radius if stated.outer is None else stated.outer
     if not outer <= drum.radius * (1.0 + BENEATH) or (
-        asked.inner is not None and not asked.inner < (1.0 - BENEATH) * outer
+        stated.inner is not None and not stated.inner < (1.0 - BENEATH) * outer
     ):
-        begins = "" if asked.inner is None else f"from {asked.inner:.6g} "
+        begins = "" if stated.inner is None else f"from {stated.inner:.6g} "
         raise UnknownError(
             f"the blank is at {drum.radius:.6g} mm, and the roller bears {begins}to {outer:.6g} mm",
             "give from and to between floor and blank",
         )
-    probe = 0.5 * (asked.inner + outer) if asked.inner is not None else min(outer, (1.0 - BENEATH) * drum.radius)
-    track = _track(drum, asked, probe)
-    floor = _floor(drum, track, asked, probe)
-    inner = floor + GAP if asked.inner is None else asked.inner
+    probe = 0.5 * (stated.inner + outer) if stated.inner is not None else min(outer, (1.0 - BENEATH) * drum.radius)
+    track = _track(drum, stated, probe)
+    floor = _floor(drum, track, stated, probe)
+    inner = floor + GAP if stated.inner is None else stated.inner
     if not floor < inner < outer:
         raise UnknownError(
             f"the floor is at {floor:.6g} mm and the blank at {drum.radius:.6g}, and the roller bears from "
             f"{inner:.6g} to {outer:.6g} mm",
             "give from and to between floor and blank",
         )
-    if asked.inner is None:
+    if stated.inner is None:
         probe = 0.5 * (inner + outer)
-        track = _track(drum, asked._replace(kind=track.kind), probe)
-    distance = asked.distance
+        track = _track(drum, stated._replace(kind=track.kind), probe)
+    distance = stated.distance
     if track.kind == "rib" and distance is None:
-        if asked.arm is not None:
+        if stated.arm is not None:
             raise UnknownError("two rollers on one arm have a distance of their own", "give distance")
         distance = 0.0
-    middle = 0.5 * (inner + outer) if asked.at is None else asked.at
-    taper = math.atan2(asked.radius, middle) if asked.taper == "axis" else asked.taper
+    middle = 0.5 * (inner + outer) if stated.at is None else stated.at
+    taper = math.atan2(stated.radius, middle) if stated.taper == "axis" else stated.taper
     follower = DrumFollower(
-        asked.radius,
+        stated.radius,
         inner,
         outer,
-        0.0 if asked.arm is None else asked.arm.pivot,
+        0.0 if stated.arm is None else stated.arm.pivot,
         Piecewise(np.array([0.0, TURN]), (Constant(0.0),)),
-        asked.offset,
+        stated.offset,
         taper,
         middle if taper else None,
-        asked.arm,
+        stated.arm,
     )
     depth = drum.radius - floor
     gauges = gauges_of(DrumIntent(follower, _flanks(track.kind, depth, distance or 0.0), drum.radius, drum.length))
@@ -165,14 +171,14 @@ def run(drum: Drum, asked: Asked) -> Run:
         line = track.lower if gauge.side < 0 else track.upper
         beside = gauge.level - follower.level
         guide = follower.guide(beside)
-        size = asked.radius + (probe - (follower.at or 0.0)) * follower.growth
+        size = stated.radius + (probe - (follower.at or 0.0)) * follower.growth
         guess = _guessed(gauge, guide, line, (probe, size, _aside(follower)))
         found[gauge.side] = _placed(drum, gauge, guide, guess, theta)
         lean = _leaning(follower, beside, gauge.side, found[gauge.side])
         leans = np.where(np.abs(lean) > np.abs(leans), lean, leans)
         steepest = max(steepest, float(np.abs(lean).max()))
     lower, upper = found[-1], found[1]
-    if track.kind == "rib" and asked.distance is None:
+    if track.kind == "rib" and stated.distance is None:
         distance = float((lower - upper).mean())
         lower, upper = lower - 0.5 * distance, upper + 0.5 * distance
     lever = gauges[0].lever
@@ -190,7 +196,7 @@ def _flanks(kind: Kind, depth: float, distance: float) -> Track:
 # --- tracks -----------------------------------------------------------------------------------------------------------
 
 
-def _track(drum: Drum, asked: Asked, radius: float) -> _Track:
+def _track(drum: Drum, stated: StatedRoller, radius: float) -> _Track:
     """The track at a radius, mm, of the kind that is asked for, or of that which the drum shows."""
     columns = drum.columns(radius, _looks())
     for k, column in enumerate(columns):
@@ -213,19 +219,18 @@ def _track(drum: Drum, asked: Asked, radius: float) -> _Track:
         tracks["top"] = [_Track("top", last, none)]
     if np.ptp(first) > still:
         tracks["bottom"] = [_Track("bottom", none, first)]
-    kind = asked.kind
+    kind = stated.kind
     if kind is None:
         inner: tuple[Kind, ...] = ("groove", "rib")
-        ends: tuple[Kind, ...] = ("top", "bottom")
-        shown = [name for name in inner if tracks[name]] or [name for name in ends if tracks[name]]
+        shown = [name for name in inner if tracks[name]] or [name for name in ENDS if tracks[name]]
         if not shown:
             raise UnknownError(f"no groove, rib or end face that rises and falls is found at {radius:.6g} mm")
         if len(shown) > 1:
             raise UnknownError(f"it may be of kind {' or '.join(shown)}", "give drum with one of them")
         kind = shown[0]
     chosen = tracks[kind]
-    if asked.height is not None and chosen:
-        chosen = [min(chosen, key=lambda track: abs(_level(track) - (asked.height or 0.0)))]
+    if stated.height is not None and chosen:
+        chosen = [min(chosen, key=lambda track: abs(_level(track) - (stated.height or 0.0)))]
     if not chosen:
         raise UnknownError(
             f"no {_NOUNS[kind]} that goes round the turn and closes is found at a radius of {radius:.6g} mm",
@@ -278,16 +283,16 @@ def _stretches(columns: Sequence[Column], first: Literal[0, 1]) -> list[tuple[Ar
     return found
 
 
-def _floor(drum: Drum, track: _Track, asked: Asked, radius: float) -> float:
+def _floor(drum: Drum, track: _Track, stated: StatedRoller, radius: float) -> float:
     """Radius, mm, of the floor: the farthest that is met inwards from where the roller runs.
 
     A ring of an end cam that stands over what lies within it has its own floor, by where the roller begins.
     """
     theta, (kind, lower, upper) = _looks(), track
-    if kind in {"top", "bottom"} and asked.inner is not None:
-        return asked.inner - GAP
+    if kind in ENDS and stated.inner is not None:
+        return stated.inner - GAP
     # the axis of a roller on the flank is about so far off it
-    rows = [0.5 * (lower + upper)] if kind == "groove" else [lower + asked.radius, upper - asked.radius]
+    rows = [0.5 * (lower + upper)] if kind == "groove" else [lower + stated.radius, upper - stated.radius]
     floor = max(drum.floor(theta, z) for z in rows if np.isfinite(z).all())
     if math.isnan(floor) or floor >= radius:
         raise UnknownError(f"no floor is found beside the {_NOUNS[kind]} at a radius of {radius:.6g} mm", "give from")

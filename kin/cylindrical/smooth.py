@@ -40,6 +40,7 @@ import numpy as np
 from kin.cylindrical.edges import Peak
 from kin.cylindrical.grid import FINE
 from kin.numeric.angles import TURN
+from kin.numeric.arrays import runs_of
 from kin.numeric.bernstein import halves, restrict
 from kin.numeric.elementary import cos, sin, sqrt
 from kin.numeric.errors import UnsettledError
@@ -155,8 +156,7 @@ def cells_of(gauge: Gauge, surface: Smooth) -> _Cells:
 
 def _parted(nets: Array, count: Indices) -> tuple[Array, Indices, Array]:
     """Patches parted along their first parameter, each into a number of parts; their own patch, and shares (k, 2)."""
-    own = np.repeat(np.arange(len(nets)), count)
-    step = np.arange(len(own)) - np.repeat(np.cumsum(count) - count, count)
+    own, step = runs_of(count)
     shares = np.stack([step, step + 1], axis=1) / count[own][:, None]
     return restrict(nets[own], shares[:, 0], shares[:, 1]), own, shares
 
@@ -197,10 +197,10 @@ def _standing(gauge: Gauge, points: Array, theta: Array) -> Array:
     rows = gauge.lifts.at(theta)
     sine, cosine = np.sin(theta), np.cos(theta)
     held = gauge.held(list(points.T), rows[0], sine, cosine)
-    guide, base, growth = gauge.course
-    axis = guide.axis(*rows)
+    axis = gauge.led.axis(*rows)
     x, y = points[:, 0] * cosine + points[:, 1] * sine, points[:, 1] * cosine - points[:, 0] * sine
-    q, size, v = y - axis.y, base + growth * x, gauge.side * (axis.z - points[:, 2])
+    growth, size = gauge.spread, gauge.size(0.0) + gauge.spread * x
+    q, v = y - axis.y, gauge.side * (axis.z - points[:, 2])
     with np.errstate(invalid="ignore", divide="ignore"):
         depth = np.sqrt(size * size - q * q)
         rate = gauge.side * axis.z1 + (size * growth * y + q * (x + axis.y1)) / depth
@@ -343,7 +343,7 @@ class _Places(NamedTuple):
 
 def _bounds(gauge: Gauge, cells: _Cells, shift: float) -> _Bounds:
     """Bounds over cells, true of rollers that give way by no more than `shift`, mm."""
-    side, (guide, base, growth) = float(gauge.side), gauge.course
+    side, guide, base, growth = float(gauge.side), gauge.led, float(gauge.size(0.0)), gauge.spread
     middle = cells.theta.mean(axis=(1, 2))
     c, s = np.cos(middle)[:, None, None], np.sin(middle)[:, None, None]
     x, y, z = np.moveaxis(cells.nets, 3, 0)
@@ -444,7 +444,7 @@ def _gaps(
     rad, and how far rollers are shifted, mm.
     """
     steep, shift = steepness
-    growth, smallest = gauge.course.growth, np.maximum(places.size.bounds()[0], 0.0)
+    growth, smallest = gauge.spread, np.maximum(places.size.bounds()[0], 0.0)
     seen = np.abs(cells.height).max(axis=(1, 2))
     top = np.maximum(cells.height.max(axis=(1, 2)), 0.0)
     with np.errstate(divide="ignore", invalid="ignore"):
@@ -482,7 +482,7 @@ def _falls(gauge: Gauge, places: _Places, angles: tuple[Array, Array], window: A
 
     `places` are those over cells whose worst angles lie between `angles`.
     """
-    side, (guide, _, growth) = float(gauge.side), gauge.course
+    side, guide, growth = float(gauge.side), gauge.led, gauge.spread
     mid, rad = gauge.lifts.round.enclosure(angles[0] - window, angles[1] + window, 2)
     lift = Ball(mid[0], rad[0] + shift / guide.lever)
     led = guide.jets(lift, Ball(mid[1], rad[1]), Ball(mid[2], rad[2]))
@@ -514,7 +514,7 @@ def demand_regular(gauge: Gauge, low: float, high: float, shift: float = 0.0) ->
     q = -side R sin a and d = R cos a of the contact at a place X along the roller, its -F'' times d^3/R^2 is above 0. F
     is there over one stretch of the shaft angle, as q/R falls with it.
     """
-    side, (guide, base, growth) = float(gauge.side), gauge.course
+    side, guide, base, growth = float(gauge.side), gauge.led, float(gauge.size(0.0)), gauge.spread
     near = math.sqrt(max(low**2 - (gauge.reach + shift) ** 2, 0.0))
     edges = np.linspace(near, high, DEPTHS + 1)
     turn = np.linspace(0.0, TURN, LOOKS + 1)
@@ -574,8 +574,8 @@ class _Held:
         sense = np.where(last >= first, 1.0, -1.0)
         begin = np.floor(low / width).astype(np.intp)
         count = np.floor(high / width).astype(np.intp) - begin + 1
-        own = np.repeat(np.arange(len(row)), count)
-        bins = begin[own] + np.arange(len(own)) - np.repeat(np.cumsum(count) - count, count)
+        own, step = runs_of(count)
+        bins = begin[own] + step
         over = np.minimum(high[own], (bins + 1) * width) - np.maximum(low[own], bins * width)
         places = row[own] * BINS + bins % BINS
         held, covered = np.full(len(numbers) * BINS, np.inf), np.zeros(len(numbers) * BINS)

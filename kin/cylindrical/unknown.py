@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING, Literal, NamedTuple
 import numpy as np
 
 from kin.numeric.angles import TURN
-from kin.numeric.arrays import paired
+from kin.numeric.arrays import paired, runs_of
 from kin.numeric.bernstein import values
 from kin.numeric.errors import CamgeoError
 from kin.numeric.records import dataclass
@@ -188,8 +188,7 @@ class Drum:
         for turn in (0.0, -TURN):
             first = np.searchsorted(rising, start + turn - 1e-12)
             count = np.maximum(np.searchsorted(rising, start + turn + wide_by + 1e-12, side="right") - first, 0)
-            each = np.repeat(np.arange(len(own)), count)
-            step = np.arange(len(each)) - np.repeat(np.cumsum(count) - count, count)
+            each, step = runs_of(count)
             owns.append(own[each])
             places.append(order[first[each] + step])
         return np.concatenate(owns), np.concatenate(places)

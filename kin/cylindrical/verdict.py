@@ -80,10 +80,11 @@ class FlankVerdict:
 class DrumVerdict:
     """Results for a file.
 
-    kind    name of the file's format: stl, ply, 3mf, step, dxf
+    kind    name of the file's format: stl, ply, 3mf, step, dxf, gcode
     checks  of a solid: watertight, contour and motion (one for each flank), form-closure, floor, blank, ends, bore,
             volume; of a motion of several turns crossings, of a shoe shoe; of a development: units, contour, motion
-            (one for each line); or a single one that says why the file cannot be read. Places are shaft angles, degrees
+            (one for each line); of a program: cutter, rapid, ways, feed, depth, cleared, contour and motion (one for
+            each flank); or a single one that says why the file cannot be read. Places are shaft angles, degrees
     flanks  lower and upper, as far as the track has them; none where the file cannot be read
     play    in a groove, or of two rollers about a rib; None with one flank
     units   mm in a unit of the file as it was read

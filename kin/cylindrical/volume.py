@@ -43,7 +43,7 @@ def volume_within(drum: DrumIntent, gauges: tuple[Gauge, ...]) -> tuple[float, f
         return core + area * length - (below[1] - below[0]), 0.0
     if isinstance(drum.track, Rib):
         return core + below[0] - below[1], 0.0
-    return core + (below[0] if drum.track.facing == "top" else area * length - below[0]), 0.0
+    return core + (below[0] if drum.track.sides[0] < 0 else area * length - below[0]), 0.0
 
 
 def _taken(drum: DrumIntent, gauges: tuple[Gauge, ...]) -> tuple[float, float]:

@@ -10,6 +10,8 @@ from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
+from kin.numeric.arrays import runs_of
+
 if TYPE_CHECKING:
     from kin.cylindrical.grid import Grid
     from kin.cylindrical.roller import Gauge
@@ -43,8 +45,8 @@ def holding(gauge: Gauge, grid: Grid, corners: Array, theta: Array, wanted: Indi
         done = int(total[begin - 1]) if begin else 0
         end = max(begin + 1, int(np.searchsorted(total, done + PAIRS, side="right")))
         here = count[begin:end]
-        which = np.repeat(np.arange(begin, end), here)
-        step = np.arange(len(which)) - np.repeat(np.cumsum(here) - here, here)
+        which, step = runs_of(here)
+        which += begin
         number = rising[first[which] + step]
         if len(which):
             found.append(_held(gauge, grid, corners[which], own[which], number))

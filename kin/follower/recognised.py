@@ -23,6 +23,7 @@ from kin.numeric.records import dataclass, replace
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
+    from kin.follower.measured import MeasuredDwell
     from kin.law.contacts import Unit
     from kin.law.normalised import Law
     from kin.numeric.arrays import Array, Indices
@@ -32,6 +33,8 @@ MOST_WAVES = 4  # a turn, of forms that may be taken for motion: shorter waves s
 ROUNDS = 25  # of Gauss and Newton
 SETTLED = 1e-9  # of a turn, and of the stroke: a step that changes nothing
 DIFFERENCE = 1e-6  # rad, and of the stroke: of numerical derivatives
+ENDS_STEP = 1e-4  # rad: of numerical derivatives by the ends of one stroke
+SHORTEST = 1e-3  # rad: no stroke is fitted shorter
 NEARLY = 1.5  # times the least residual: laws that fit no worse are named too
 LEAST_STROKE = 4.0  # readings: the least height of a stroke at a turning point
 
@@ -199,13 +202,17 @@ def _places(motion: Moved, reading: float, unit: Unit) -> list[tuple[float, floa
     return sorted(places + turns, key=lambda place: place[0] % TURN)
 
 
+def dwells_of(position: Array, reading: float, unit: Unit) -> list[MeasuredDwell]:
+    """Dwells, in the order of the turn, of positions (n,), mm or rad, at equal steps that rest within a reading."""
+    nothing = np.zeros(len(position))
+    rows, ends = np.stack([position, nothing, nothing]), (float(position.min()), 0.0)
+    shaft, most = equal_steps(len(position)), (float(position.max()), 0.0)
+    return MeasuredMotion(unit, shaft, rows, nothing, nothing, ends, most).dwells(reading)
+
+
 def _rests(motion: Moved, reading: float, unit: Unit) -> list[tuple[float, float, float]]:
     """Stretches that rest within a reading: begin, end, level, those that lie in the span of the motion."""
-    whole, nothing = motion.turn, np.zeros(len(motion.turn))
-    rows = np.stack([whole, nothing, nothing])
-    least, most = (float(whole.min()), 0.0), (float(whole.max()), 0.0)
-    dwells = MeasuredMotion(unit, equal_steps(len(whole)), rows, nothing, nothing, least, most).dwells(reading)
-    rests = [(rest.begin, rest.end, rest.level) for rest in dwells]
+    rests = [(rest.begin, rest.end, rest.level) for rest in dwells_of(motion.turn, reading, unit)]
     if motion.closed:
         return rests
     parts = [
@@ -213,7 +220,7 @@ def _rests(motion: Moved, reading: float, unit: Unit) -> list[tuple[float, float
         for begin, end, level in rests
         for turn in (0.0, TURN)
     ]
-    return sorted(part for part in parts if part[1] - part[0] > TURN / len(whole))
+    return sorted(part for part in parts if part[1] - part[0] > TURN / len(motion.turn))
 
 
 def _turns(
@@ -279,7 +286,7 @@ def _by_law(
     for name in NAMES:
 
         def off(ends: Array, name: str = name) -> Array:
-            u = (shaft - ends[0]) / max(float(ends[1] - ends[0]), 1e-3)
+            u = (shaft - ends[0]) / max(float(ends[1] - ends[0]), SHORTEST)
             moved = _law_of(name, u, falls=falls)
             columns = np.column_stack([1.0 - moved, moved])
             level = np.linalg.lstsq(columns, position, rcond=None)[0]
@@ -293,8 +300,8 @@ def _by_law(
             slopes = np.zeros((len(shaft), 2))
             for k in np.flatnonzero(free):
                 step = np.zeros(2)
-                step[k] = 1e-4
-                slopes[:, k] = (off(ends + step) - off(ends - step)) / 2e-4
+                step[k] = ENDS_STEP
+                slopes[:, k] = (off(ends + step) - off(ends - step)) / (2.0 * ENDS_STEP)
             if not free.any():
                 break
             change = np.zeros(2)

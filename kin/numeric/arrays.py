@@ -1,4 +1,4 @@
-"""Types of the arrays that functions take and give, and one number for a pair of indices."""
+"""Types of the arrays that functions take and give, one number for a pair of indices, and numbers of runs."""
 
 from __future__ import annotations
 
@@ -23,3 +23,9 @@ def paired(first: Indices, second: Indices, size: int) -> NDArray[np.int64]:
     The number has 64 bits, also where an index has 32 (Python in a browser), in which the product would overflow.
     """
     return first.astype(np.int64, copy=False) * size + second
+
+
+def runs_of(count: Indices) -> tuple[Indices, Indices]:
+    """Return for each entry of runs of `count` (n,) entries the number of its run, and its place in that, (m,) each."""
+    own = np.repeat(np.arange(len(count)), count)
+    return own, np.arange(len(own)) - np.repeat(np.cumsum(count) - count, count)

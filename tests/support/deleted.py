@@ -151,7 +151,7 @@ def dependent(text: str, name: str) -> list[str]:
 
 def copy_without(names: Collection[str], folder: Path) -> Path:
     """Copy what the repository holds, but for these capabilities, into a folder."""
-    told = subprocess.run(
+    listed = subprocess.run(
         ["git", "ls-files", "-z", "--cached", "--others", "--exclude-standard"],
         cwd=ROOT,
         capture_output=True,
@@ -161,11 +161,9 @@ def copy_without(names: Collection[str], folder: Path) -> Path:
     own = tuple(f"kin/{half}/" for name in names for half in registry.labels()[name].kin)
     for name in names:
         own += (f"camgeo/capabilities/{name}/", f"tests/capabilities/{name}/", f"docs/{name}.md", f"web/{name}.")
-    for place in told.stdout.decode().split("\0"):
+    for place in listed.stdout.decode().split("\0"):
         path = ROOT / place
-        if not place or place.startswith(own) or not path.is_file():
-            continue
-        if place in gone:
+        if not place or place in gone or place.startswith(own) or not path.is_file():
             continue
         copied = folder / place
         copied.parent.mkdir(parents=True, exist_ok=True)

@@ -31,7 +31,8 @@ GENERATOR = "zensical"
 MADE_BY = ".made-by-make-site"  # stands in a folder that this script made, and may make anew
 DESIGN = "design"  # folder of the page that designs in a browser
 SHOWN = ("recipes", "examples")  # folders whose files are all published
-LANGUAGES = {".yaml": "yaml", ".py": "python", ".csv": "text"}
+LANGUAGES = {".yaml": "yaml", ".py": "python", ".csv": "text"}  # of what is shown of these folders, by suffix
+UNSOUGHT = ["---", "search:", "  exclude: true", "---"]  # head of a page that the search leaves out
 OTHERS = {"CHANGELOG.md": "changelog.md", "CONTRIBUTING.md": "contributing.md", "README.md": "index.md"}
 
 CODE = r"^ *```.*?^ *```[^\n]*$|``.+?``|`[^`]+`"
@@ -84,7 +85,7 @@ class Source:
     """The folder of which the generator makes the site: pages in Markdown, files beside them."""
 
     def __init__(self, folder: Path) -> None:
-        """Begin with an empty folder."""
+        """Take a folder, which `write` makes with its first page."""
         self.folder = folder
         self._shown = set[str]()
 
@@ -99,7 +100,7 @@ class Source:
         text = (ROOT / place).read_text(encoding="utf-8")
         text = COMMENT.sub(lambda m: m["code"] or "", text)
         text = LINK.sub(lambda m: self._linked(m, posixpath.dirname(place), name), text)
-        text = re.sub(r"\[([\w-]+)\.md\]\(", r"[\1](", plain_lists(text))  # a page's name without its suffix
+        text = re.sub(r"\[([\w-]+)\.md\]\(", r"[\1](", plain_lists(text))  # a reader of the site sees no files
         if more:
             head, _, rest = text.partition("\n# ") if text.startswith("---") else ("", "", text.removeprefix("# "))
             title, _, rest = rest.partition("\n")
@@ -121,7 +122,10 @@ class Source:
         return f"]({address}{mark}{anchor})"
 
     def place_of(self, place: str) -> str:
-        """Where the site has a file or a folder of the repository; what is no page of docs is shown on one."""
+        """Where the site has a file or a folder of the repository; what is no page of docs is shown on one.
+
+        Raises FileNotFoundError for what the repository does not hold.
+        """
         if place in OTHERS:
             return OTHERS[place]
         if place.startswith("docs/"):
@@ -145,7 +149,7 @@ class Source:
         up = posixpath.relpath(".", posixpath.dirname(place))
         about = re.search(r"^about: *['\"]?(.*?)['\"]?$", text, re.MULTILINE) if path.suffix == ".yaml" else None
         picture = f"gallery/{path.stem}.svg" if path.suffix == ".yaml" else ""
-        lines = ["---", "search:", "  exclude: true", "---", f"# {path.name}", ""]
+        lines = [*UNSOUGHT, f"# {path.name}", ""]
         lines += [f"{about[1]}", ""] if about else []
         lines += [f'<p><a href="{path.name}" download>Save this file</a> ({place} of the repository)</p>', ""]
         if picture and (ROOT / "docs" / picture).is_file():
@@ -156,22 +160,24 @@ class Source:
     def folders(self) -> None:
         """Publish the folders that are shown whole, each with a page that lists its files."""
         for top in SHOWN:
-            for folder in (ROOT / top, *sorted(path for path in (ROOT / top).rglob("*") if path.is_dir())):
+            folders = [ROOT / top, *sorted(path for path in (ROOT / top).rglob("*") if path.is_dir())]
+            for folder in (path for path in folders if path.name != "__pycache__"):
                 files = [path for path in sorted(folder.iterdir()) if path.suffix in LANGUAGES]
-                inner = [path for path in sorted(folder.iterdir()) if path.is_dir() and path.name != "__pycache__"]
-                if folder.name == "__pycache__":
-                    continue
+                inner = [path for path in sorted(folder.iterdir()) if path in folders and path.name != "__pycache__"]
                 for path in files:
                     self.show(path)
                 place = folder.relative_to(ROOT).as_posix()
-                lines = ["---", "search:", "  exclude: true", "---", f"# {place}", ""]
+                lines = [*UNSOUGHT, f"# {place}", ""]
                 lines += [f"- [{path.name}/]({path.name}/index.md)" for path in inner]
                 lines += [f"- [{path.name}]({path.name}.md)" for path in files]
                 self.write(f"{place}/index.md", "\n".join([*lines, ""]))
 
 
 def plain_lists(text: str) -> str:
-    """Give a page with lists and tables as the generator reads them: behind an empty line, four deep below a number."""
+    """Give a page with lists and tables as the generator reads them.
+
+    It wants an empty line before each, and what belongs to an item of a numbered list indented by four.
+    """
     lines = list[str]()
     code = numbered = False
     given = text.split("\n")

@@ -2,18 +2,19 @@
 
 from __future__ import annotations
 
-import math
 from typing import TYPE_CHECKING
 
 import numpy as np
+
+from kin.numeric.angles import TURN
+from kin.numeric.arrays import runs_of
 
 if TYPE_CHECKING:
     from kin.law.piecewise import Piecewise
     from kin.numeric.arrays import Array
 
-TURN = 2.0 * math.pi
 LOOKS = 720  # parts of a turn over each of which a second derivative is bounded
-WIDEST = TURN / 36.0
+WIDEST = TURN / 36.0  # rad between two angles, however little a line bends
 
 
 def looks_of(law: Piecewise) -> Array:
@@ -28,9 +29,8 @@ def parted(look: Array, bend: Array, tolerance: float) -> tuple[Array, float]:
 
     `bend` (n,) bounds the second derivative over each part of `look` (n + 1,).
     """
-    step = np.minimum(np.sqrt(8.0 * tolerance / np.maximum(bend, 1e-300)), WIDEST)
-    count = np.maximum(np.ceil(np.diff(look) / step), 1).astype(np.intp)
+    widest = np.minimum(np.sqrt(8.0 * tolerance / np.maximum(bend, 1e-300)), WIDEST)
+    count = np.maximum(np.ceil(np.diff(look) / widest), 1).astype(np.intp)
     off = float((bend * (np.diff(look) / count) ** 2).max()) / 8.0
-    parts = np.repeat(np.diff(look) / count, count)
-    first = np.repeat(look[:-1], count) + parts * (np.arange(parts.size) - np.repeat(np.cumsum(count) - count, count))
-    return first, off
+    own, step = runs_of(count)
+    return look[own] + (np.diff(look) / count)[own] * step, off

@@ -31,8 +31,8 @@ if TYPE_CHECKING:
     from kin.numeric.arrays import Array, Indices
 
 BESIDE = 2.1  # once for the normal of the place in place of the cell's, once for the surface beside the foot
-TINY = 1e-300
-STEPS = 2
+TINY = 1e-300  # keeps a quotient finite whose parts are both 0
+STEPS = 2  # by which a cell is made narrower until it holds its tolerance
 SETTLE, WIDER = 8, 1e-12  # rounds by which places along a roller are enclosed, and the rounding of the first
 
 

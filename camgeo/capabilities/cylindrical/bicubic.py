@@ -32,9 +32,10 @@ from typing import TYPE_CHECKING, Generic, NamedTuple, TypeVar
 import numpy as np
 
 from camgeo.capabilities.cylindrical.bends import places_along
-from camgeo.capabilities.cylindrical.grid import SAME, TURN, breaks_of
+from camgeo.capabilities.cylindrical.grid import SAME, breaks_of
 from camgeo.common.rounding import upward
 from camgeo.fit.nodes import ToleranceError, check_precision, rounding
+from kin.numeric.angles import TURN
 from kin.numeric.elementary import cos, sin, sqrt
 from kin.numeric.interval import Ball
 from kin.numeric.jet import BallJet, Jet
@@ -48,9 +49,9 @@ if TYPE_CHECKING:
 
 Number = TypeVar("Number", Jet, BallJet)
 
-HERMITE = 384.0
+HERMITE = 384.0  # of the error of cubic Hermite interpolation
 LOOKS, BLOCKS = 360, 4  # parts of a turn and of the depth, over each of which derivatives are bounded
-MOST_ROWS, MOST_NODES = 64, 10_000
+MOST_ROWS, MOST_NODES = 64, 10_000  # of one flank: beyond, a tolerance is refused
 WIDEST = 0.5  # rad between nodes
 NEAR = 1e-9  # rad: a wanted angle so near a break is meant to be it
 JUMP = 1e-9  # of S', in mm, and of S'': what is less is rounding

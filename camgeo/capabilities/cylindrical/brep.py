@@ -14,11 +14,10 @@ import numpy as np
 
 from camgeo.capabilities.cylindrical.bicubic import NEAR, bicubics, jumps_of
 from camgeo.capabilities.cylindrical.figures import at_angle
-from camgeo.capabilities.cylindrical.grid import TURN
-from camgeo.capabilities.cylindrical.keys import End, Groove
 from camgeo.files.brep import Shape, Stack
 from camgeo.files.curves import CONFUSION
 from camgeo.files.errors import RegionError
+from kin.numeric.angles import TURN
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -59,7 +58,7 @@ class _Drum:
 
     def __init__(self, design: DrumDesign, tolerance: float) -> None:
         self.design, self.stack = design, Stack()
-        self.sign = -1.0 if design.recipe.rotation == "ccw" else 1.0
+        self.sign = design.recipe.sense
         self.off, self.pieces = 0.0, 0
         self.tolerance = tolerance
 
@@ -149,40 +148,31 @@ def drum_solid(design: DrumDesign, tolerance: float) -> Solid:
 
     Raises ToleranceError where the tolerance cannot be held, RegionError where the kernel finds the solid unsound.
     """
-    recipe, track = design.recipe, design.recipe.track
+    recipe, rising = design.recipe, design.recipe.track.rising
     drum = _Drum(design, tolerance)
-    core, blank, top = recipe.floor, recipe.radius, recipe.height
+    top, radii = recipe.height, {"lower": (recipe.radius, recipe.floor), "upper": (recipe.floor, recipe.radius)}
     bore = [None, None]
     if design.bore is not None:
         outline = design.bore.outline if drum.sign > 0.0 else design.bore.outline.mirrored()
         foot, head = drum.stack.wall(outline, 0.0, top)
         bore = [foot.wire, head.wire]
-    shared = core if isinstance(track, Groove) else blank
-    parted = _parted(design, shared)
+    # between two flanks one cylinder joins them
+    parted = _parted(design, radii[rising[0]][1] if len(rising) > 1 else recipe.radius)
     lines = {name: drum.flank(name, parted[name]) for name in design.flanks}
 
     def angles(name: str, radius: float) -> list[float]:
         return [float(phi) for phi in design.flanks[name].on(np.array(parted[name]), radius).phi]
 
-    if isinstance(track, Groove):
-        low = drum.circle(blank, 0.0, angles("lower", blank))
-        high = drum.circle(blank, top, angles("upper", blank))
-        drum.cylinder(blank, low, lines["lower"][0])
-        drum.cylinder(core, lines["lower"][1], lines["upper"][1])
-        drum.cylinder(blank, lines["upper"][0], high)
-    elif isinstance(track, End):
-        ((name, (edge, foot_line)),) = lines.items()
-        radii = (blank, core) if track.facing == "top" else (core, blank)
-        rows = (edge, foot_line) if track.facing == "top" else (foot_line, edge)
-        low, high = (drum.circle(radius, z, angles(name, radius)) for radius, z in zip(radii, (0.0, top), strict=True))
-        drum.cylinder(radii[0], low, rows[0])
-        drum.cylinder(radii[1], rows[1], high)
-    else:
-        low = drum.circle(core, 0.0, angles("upper", core))
-        high = drum.circle(core, top, angles("lower", core))
-        drum.cylinder(core, low, lines["upper"][1])
-        drum.cylinder(blank, lines["upper"][0], lines["lower"][0])
-        drum.cylinder(core, lines["lower"][1], high)
+    first, last = radii[rising[0]][0], radii[rising[-1]][1]
+    low = drum.circle(first, 0.0, angles(rising[0], first))
+    high = drum.circle(last, top, angles(rising[-1], last))
+    below = low
+    for name in rising:
+        on_blank, on_floor = lines[name]
+        near, far = (on_blank, on_floor) if name == "lower" else (on_floor, on_blank)
+        drum.cylinder(radii[name][0], below, near)
+        below = far
+    drum.cylinder(last, below, high)
     drum.lid(0.0, low, bore[0])
     drum.lid(top, high, bore[1])
     return Solid(drum.stack.solid(), drum.off, drum.pieces)

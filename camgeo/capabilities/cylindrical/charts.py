@@ -13,9 +13,10 @@ import numpy as np
 from camgeo.capabilities.cylindrical.crossings import sampled
 from camgeo.capabilities.cylindrical.figures import carried_from, outer_end
 from camgeo.capabilities.cylindrical.shells import PLACES, height, runs, shell
-from camgeo.capabilities.cylindrical.turning import LINES, outline, rollers, sense
+from camgeo.capabilities.cylindrical.turning import LINES, outline, rollers
 from camgeo.measures.units import UNIT_NAMES
 from camgeo.recipe.figures import PRESSURE_ANGLE
+from kin.numeric.angles import TURN
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -24,11 +25,10 @@ if TYPE_CHECKING:
     from camgeo.capabilities.cylindrical.flank import Flank
     from kin.numeric.arrays import Array, Mask
 
-TURN = 2.0 * math.pi
 WIDTH, LEFT, RIGHT, TOP, FOOT = 420.0, 46.0, 10.0, 8.0, 30.0  # px of a chart, and of its margins
 FIELD = WIDTH - LEFT - RIGHT
 HIGH = 150.0  # px of the map's field
-BEYOND = 0.3  # rad
+BEYOND = 0.3  # rad, by which the path of an axis beside a radius is drawn beyond the turn
 ROUND = 48  # chords of a roller's section
 COLUMNS, ROWS = 180, 16  # cells of the map
 STEPS_OF = (1.0, 2.0, 5.0, 10.0, 15.0)  # degrees from colour to colour
@@ -73,7 +73,7 @@ def development(design: DrumDesign) -> str:
     for flank in rollers(design):
         beside, z = flat_axis(design, flank, theta)
         share = theta / TURN + beside
-        share = share if sense(design) > 0.0 else 1.0 - share
+        share = share if design.recipe.sense > 0.0 else 1.0 - share
         points = np.column_stack([LEFT + FIELD * share, TOP + tall - scale * z])
         x, y = np.array([np.interp(0.0, theta, row) for row in points.T]).tolist()
         pieces = [points]
@@ -115,7 +115,7 @@ def crossed(design: DrumDesign) -> list[tuple[float, float]]:
     if not design.crossings:
         return []
     at = np.array([crossing.first for crossing in design.crossings])
-    share = np.mod(sense(design) * at / TURN, 1.0)
+    share = np.mod(design.recipe.sense * at / TURN, 1.0)
     return list(zip(share.tolist(), design.flanks["lower"].pose(at).z.tolist(), strict=True))
 
 
@@ -294,7 +294,7 @@ def _chart(name: str, tall: float, told: str, *parts: str, more: float = 0.0) ->
     return f'<svg id="{name}" class="chart" role="img" aria-label="{told}" viewBox="{box}">{"".join(parts)}</svg>'
 
 
-def keys(design: DrumDesign) -> Sequence[str]:
+def legend(design: DrumDesign) -> Sequence[str]:
     """Sentences that say what the lines of the development are."""
     mm, unit = design.recipe.mm, UNIT_NAMES[design.recipe.units]
     blank, inner = f"{design.recipe.radius / mm:.6g} {unit}", f"{design.recipe.roller.inner / mm:.6g} {unit}"

@@ -11,7 +11,7 @@ from camgeo.capabilities.cylindrical.crossings import wall_between
 from camgeo.capabilities.cylindrical.development import radii
 from camgeo.capabilities.cylindrical.figures import at_angle, bears, steepest
 from camgeo.capabilities.cylindrical.flank import distance
-from camgeo.capabilities.cylindrical.keys import DEVELOPMENT, Groove, Rib
+from camgeo.capabilities.cylindrical.keys import DEVELOPMENT
 from camgeo.measures.placed import Figure, figure_check, limit_checks
 from camgeo.measures.rule_remark import RuleRemark
 from camgeo.measures.units import in_units
@@ -53,14 +53,13 @@ def walls(design: DrumDesign) -> list[tuple[float, str]]:
     """Walls of a drum, mm, each with what it stands between; without a bore those of the ends alone."""
     recipe, track = design.recipe, design.recipe.track
     low, high = design.motion.range
-    word = "rib" if isinstance(track, Rib) else "groove" if isinstance(track, Groove) else "flank"
     found = []
     for name, flank in design.flanks.items():
-        # a rib's lower face is the flank above a roller
-        if (name == "lower") != (word == "rib"):
-            found.append((flank.resting(low, recipe.radius), f"between the {word} and the lower face"))
+        if track.meets_lower_face(name):
+            found.append((flank.resting(low, recipe.radius), f"between the {track.noun} and the lower face"))
         else:
-            found.append((recipe.height - flank.resting(high, recipe.radius), f"between the {word} and the upper face"))
+            wall = recipe.height - flank.resting(high, recipe.radius)
+            found.append((wall, f"between the {track.noun} and the upper face"))
     if recipe.turns > 1:
         between = min(wall_between(design.flanks, r)[0] for r in (recipe.floor, recipe.radius))
         if math.isfinite(between):
@@ -99,7 +98,7 @@ def remarks_on(design: DrumDesign, figures: Sequence[Figure]) -> tuple[RuleRemar
         sentence = f"the contact's pressure reaches {pressure.value:.4g} N/mm^2, the materials bear {bearable:.4g}"
         remarks.append(RuleRemark("contact-pressure", pressure.value, bearable, pressure.unit, sentence, pressure.at))
     twist, track = known.get("shoe-twist"), recipe.track
-    if twist is not None and isinstance(track, Groove) and twist.value > track.clearance:
+    if twist is not None and twist.value > track.clearance:
         shown, unit = in_units(recipe, twist.value, "mm")
         sentence = f"the shoe needs {shown:.2g} {unit} of clearance, as its track is steeper at its inner end"
         remarks.append(RuleRemark("shoe-twist", twist.value, track.clearance, "mm", sentence, twist.at))

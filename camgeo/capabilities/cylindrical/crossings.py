@@ -25,6 +25,7 @@ from typing import TYPE_CHECKING, NamedTuple
 import numpy as np
 
 from camgeo.curve.curve import CurveError
+from kin.numeric.angles import TURN
 from kin.numeric.records import dataclass
 
 if TYPE_CHECKING:
@@ -33,7 +34,6 @@ if TYPE_CHECKING:
     from camgeo.capabilities.cylindrical.flank import Flank
     from kin.numeric.arrays import Array, Mask
 
-TURN = 2.0 * math.pi
 SEEK = 1440  # places of a turn between which rows change sides
 BEYOND = 0.3  # of a turn by which a row is known beyond its period
 STEPS = 6  # radii from the blank to the floor, from each of which the corners of the next are found
@@ -83,7 +83,7 @@ class Corner:
 
 @dataclass(frozen=True, eq=False)
 class Crossing:
-    """Tracks a and b at shaft angles `first` and `second`, rad, whose paths meet; the second is `turns` beyond."""
+    """Tracks a and b at shaft angles `first` and `second`, rad, at which their paths meet, whole turns apart."""
 
     first: float
     second: float

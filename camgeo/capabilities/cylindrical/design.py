@@ -9,21 +9,20 @@ import numpy as np
 
 from camgeo.capabilities.cylindrical.crossings import crossings_of
 from camgeo.capabilities.cylindrical.flank import Flank
-from camgeo.capabilities.cylindrical.grid import TURN
-from camgeo.capabilities.cylindrical.keys import Groove, Rib
 from camgeo.capabilities.cylindrical.sheet import cut_sheet, whole_sheet
 from camgeo.capabilities.cylindrical.undercut import cut_at, demand_regular, tips
 from camgeo.curve.curve import CurveError
 from camgeo.measures.placed import SEEK, greatest_of
 from camgeo.part.body import bore_of
+from kin.numeric.angles import TURN
 from kin.numeric.lengths import in_unit
-from kin.numeric.records import dataclass, replace
+from kin.numeric.records import dataclass
 
 if TYPE_CHECKING:
     from collections.abc import Callable
 
     from camgeo.capabilities.cylindrical.crossings import Crossing
-    from camgeo.capabilities.cylindrical.keys import DrumRecipe
+    from camgeo.capabilities.cylindrical.drum_recipe import DrumRecipe
     from camgeo.capabilities.cylindrical.sheet import Sheet
     from camgeo.capabilities.cylindrical.undercut import Cut, Tip
     from camgeo.part.shapes import Opening
@@ -49,18 +48,8 @@ class DrumDesign:
     @cached_property
     def flanks(self) -> dict[str, Flank]:
         """Flanks by name: `lower` with the metal below, `upper` with the metal above."""
-        roller, guide, track = self.recipe.roller, self.recipe.guide, self.recipe.track
-        lower = Flank(self.law, guide, roller.radius, -1, roller.taper, roller.at)
-        upper = replace(lower, side=1)
-        if isinstance(track, Groove):
-            return {"lower": lower, "upper": replace(upper, radius=roller.radius + track.clearance)}
-        if isinstance(track, Rib):
-            half = 0.5 * track.distance
-            return {
-                "lower": replace(lower, guide=guide.beside(half)),
-                "upper": replace(upper, guide=guide.beside(-half)),
-            }
-        return {"lower": lower} if track.facing == "top" else {"upper": upper}
+        roller = self.recipe.roller
+        return self.recipe.track.flanks(Flank(self.law, self.recipe.guide, roller.radius, -1, roller.taper, roller.at))
 
     @cached_property
     def crossings(self) -> list[Crossing]:

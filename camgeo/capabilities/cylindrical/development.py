@@ -11,13 +11,14 @@ from typing import TYPE_CHECKING, Literal, NamedTuple
 
 import numpy as np
 
-from camgeo.capabilities.cylindrical.angles import LOOKS, TURN, looks_of, parted
+from camgeo.capabilities.cylindrical.angles import LOOKS, looks_of, parted
 from camgeo.capabilities.cylindrical.bends import bends
 from camgeo.capabilities.cylindrical.keys import OUTER, PITCH
 from camgeo.capabilities.cylindrical.undercut import cut_at
 from camgeo.fit.bound import Bound
 from camgeo.fit.nodes import ToleranceError
 from kin.cylindrical.intent import Developed
+from kin.numeric.angles import TURN
 from kin.numeric.interval import Ball
 
 if TYPE_CHECKING:
@@ -32,10 +33,10 @@ if TYPE_CHECKING:
     from kin.numeric.arrays import Array
 
 OVERLAP = TURN / 24.0  # by which a line goes on beyond its period
-MOST_POINTS = 2_000_000
-NEWTON = 30
-COLOURS = {"lower": 5, "upper": 1, PITCH: 3}
-MARKS = "OVERLAP"
+MOST_POINTS = 2_000_000  # of one line
+STEPS, HALVINGS = 30, 60  # to the shaft angle at which a path, or a flank, has the polar angle 0
+COLOURS = {"lower": 5, "upper": 1, PITCH: 3}  # of AutoCAD, by what a line is
+MARKS = "OVERLAP"  # end of the name of the layer whose marks enclose what is drawn twice
 
 
 class Line(NamedTuple):
@@ -79,7 +80,7 @@ def drawn(design: DrumDesign, line: Developed, tolerance: float) -> Line:
     theta = np.unique(np.concatenate([theta, [begin, begin + period, begin + period + OVERLAP]]))
     theta = theta[(theta >= begin) & (theta <= begin + period + OVERLAP)]
     points = _pitch(design, line.radius, theta) if line.flank == PITCH else _flank(design, line, theta)
-    if design.recipe.rotation == "ccw":
+    if design.recipe.mirrored:
         points = points * np.array([-1.0, 1.0]) + 0.0
     return Line(line, points, off)
 
@@ -95,7 +96,7 @@ def unrolled(design: DrumDesign, tolerance: float) -> list[Array]:
 
 def _reach(design: DrumDesign, radius: float, at: float) -> float:
     """Place of a polar angle, rad, on a development, mm."""
-    return (radius if design.recipe.rotation == "cw" else -radius) * at
+    return design.recipe.sense * radius * at
 
 
 def _mark(design: DrumDesign, radius: float, at: float) -> Array:
@@ -124,7 +125,7 @@ def _pitch_start(design: DrumDesign, radius: float) -> float:
     guide, theta = design.recipe.guide, np.zeros(1)
     if guide.radial:
         return 0.0
-    for _ in range(NEWTON):  # the roller leaves the radius slowly
+    for _ in range(STEPS):  # the roller leaves the radius slowly
         theta = -np.arcsin(guide.place(design.law.derivatives(theta, 0))[0][0] / radius)
     return float(theta[0])
 
@@ -152,7 +153,7 @@ def _start(flank: Flank, radius: float) -> float:
     phi = flank.on(looks, radius).phi
     k = int(np.flatnonzero(phi <= 0.0)[-1])
     low, high = looks[k], looks[k + 1]
-    for _ in range(2 * NEWTON):
+    for _ in range(HALVINGS):
         middle = 0.5 * (low + high)
         if flank.on(np.array([middle]), radius).phi[0] <= 0.0:
             low = middle

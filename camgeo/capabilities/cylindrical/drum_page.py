@@ -16,13 +16,13 @@ from camgeo.capabilities.cylindrical.charts import (
     development,
     flat_axis,
     flat_scale,
-    keys,
+    legend,
     limits,
     pressure_map,
 )
 from camgeo.capabilities.cylindrical.figures import contact_length
 from camgeo.capabilities.cylindrical.shells import FACE, PLACES, RIM, shells
-from camgeo.capabilities.cylindrical.turning import LINES, rollers, scene, sense, slope, touched
+from camgeo.capabilities.cylindrical.turning import LINES, rollers, scene, slope, touched
 from camgeo.measures.units import UNIT_NAMES
 from camgeo.report.page import tables
 from camgeo.report.page.page import pack_numbers, picture, plotted
@@ -77,7 +77,7 @@ def _asset(name: str) -> str:
 
 def _charts(design: DrumDesign) -> str:
     """Return development and map, side by side where there is room."""
-    note = " ".join(keys(design))
+    note = " ".join(legend(design))
     limit = "Above the limit the colour is that of a failed check. " if limits(design) else ""
     lost = "Violet: lost to undercut. " if design.recipe.shortens else ""
     told = f"Magnitude along the roller's line of contact; the ring is at its greatest. {limit}{lost}".strip()
@@ -96,7 +96,7 @@ def _played(design: DrumDesign, of: Sequence[Shell], digits: int) -> dict[str, A
     boat = {"turn": pack_numbers(np.degrees(slope(design, theta)))} if recipe.roller.shoe is not None else {}
     return {
         "turns": recipe.turns,
-        "sense": sense(design),
+        "sense": design.recipe.sense,
         "digits": digits,
         "places": PLACES,
         "parts": LINES,

@@ -8,11 +8,11 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from camgeo.capabilities.cylindrical.design import DrumDesign, in_recipe
-from camgeo.capabilities.cylindrical.refused import demand_sound
+from camgeo.capabilities.cylindrical.soundness import demand_sound
 from kin.law.normalised import IntentError
 
 if TYPE_CHECKING:
-    from camgeo.capabilities.cylindrical.keys import DrumRecipe
+    from camgeo.capabilities.cylindrical.drum_recipe import DrumRecipe
     from camgeo.common.clock import Clock
     from camgeo.motions.stated import StatedMotion
     from kin.numeric.arrays import Array

@@ -10,14 +10,14 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from camgeo.capabilities.cylindrical.crossings import lost_of
-from camgeo.capabilities.cylindrical.grid import breaks_of
-from camgeo.capabilities.cylindrical.keys import Groove, Rib
+from camgeo.capabilities.cylindrical.grid import breaks_of, parts_between
 from camgeo.capabilities.cylindrical.shoe import angle_of, play, twist
 from camgeo.capabilities.cylindrical.undercut import below
 from camgeo.curve.extremes import both
 from camgeo.measures.hertz import bearable, line_pressure
 from camgeo.measures.placed import Figure
 from camgeo.recipe.figures import PRESSURE_ANGLE
+from kin.numeric.angles import TURN
 
 if TYPE_CHECKING:
     from camgeo.capabilities.cylindrical.design import DrumDesign
@@ -27,12 +27,12 @@ if TYPE_CHECKING:
     from camgeo.curve.rates import Series
     from kin.numeric.arrays import Array
 
-TURN = 2.0 * math.pi
 MINUTE = 60.0
 MIDDLE, OUTER = f"{PRESSURE_ANGLE}-middle", f"{PRESSURE_ANGLE}-outer"
 ALONG = 9  # places along a line of contact at which a greatest figure is sought
-RADII, PLACES = 24, 24  # of Gauss, over which a volume is integrated
-NEWTON = 40
+RADII, PLACES = 24, 24  # of Gauss from floor to blank, and in each part of the turn, over which a volume is integrated
+PARTS = 12  # of a turn, over each of which places of Gauss are taken
+NEWTON = 40  # halvings of the angle at which a flank is touched
 
 
 def slopes(design: DrumDesign, order: int = 1) -> tuple[Extreme, Extreme]:
@@ -92,10 +92,10 @@ def figures_of(design: DrumDesign) -> list[Figure]:
     found += _carrying(design)
     if recipe.swings:
         found.append(_off_radius(design))
-    if isinstance(recipe.track, Groove):
+    if "play" in recipe.track.figures:
         play, place = design.greatest(lambda theta: play_at(design, theta))
         found.append(_displaced(design, "play", play, "", math.degrees(place)))
-    if isinstance(recipe.track, Rib):
+    if "rib-thickness" in recipe.track.figures:
         thickness, thin = design.greatest(lambda theta: -rib_thickness(design, theta, recipe.floor))
         found.append(Figure("rib-thickness", -thickness, "mm", math.degrees(thin)))
     found += [*_crossed(design), *_boat(design)]
@@ -158,8 +158,7 @@ def play_at(design: DrumDesign, theta: Array) -> Array:
 
     It is the clearance over cos alpha where that is least along the line of contact.
     """
-    track, flank = design.recipe.track, design.flanks["upper"]
-    clearance = track.clearance if isinstance(track, Groove) else 0.0
+    clearance, flank = design.recipe.track.clearance, design.flanks["upper"]
     angles = np.abs([flank.pressure(theta, rho) for rho in _along(design, "upper", theta)])
     return np.asarray(clearance / np.cos(angles.min(axis=0)) / flank.guide.reach)
 
@@ -284,8 +283,8 @@ def _loaded(design: DrumDesign, steep: tuple[float, float]) -> list[Figure]:
         found: Array = line_pressure(force * curvature / width, np.ones_like(force), 1.0, drum, roller).max(axis=0)
         return found
 
-    names = design.flanks if not isinstance(recipe.track, Groove) else ("lower",)
-    value, at = max(design.greatest(lambda theta, name=name: pressure(name, theta)) for name in names)  # type: ignore[misc]
+    each = recipe.track.carrying
+    value, at = max(design.greatest(lambda theta, name=name: pressure(name, theta)) for name in each)  # type: ignore[misc]
     return [*found, Figure("contact-pressure", value, "N/mm^2", math.degrees(at))]
 
 
@@ -311,12 +310,10 @@ def volume(design: DrumDesign) -> float:
     node, weight = np.polynomial.legendre.leggauss(RADII)
     r = floor + 0.5 * (blank - floor) * (node + 1.0)
     flanks = {name: _areas(design, name, r) for name in design.flanks}
-    if isinstance(recipe.track, Rib):
-        stands = flanks["lower"] - flanks["upper"]
-    else:
-        stands = flanks.get("lower", np.zeros_like(r))
-        if "upper" in flanks:
-            stands = stands + TURN * r * height - flanks["upper"]
+    stands = flanks.get("lower", np.zeros_like(r))
+    if recipe.track.rising[-1] == "upper":
+        stands = stands + TURN * r * height
+    stands = stands - flanks.get("upper", 0.0)
     round_it = 0.5 * (blank - floor) * float(np.sum(weight * stands))
     return (math.pi * floor**2 - bore) * height + round_it
 
@@ -337,8 +334,7 @@ def _areas(design: DrumDesign, name: str, r: Array) -> Array:
 
 def _kept(design: DrumDesign, name: str, radius: float) -> list[tuple[float, float]]:
     """Stretches of shaft angles, rad, without a break, on which a flank on a cylinder is not cut away."""
-    knots = breaks_of(design.flanks[name])
-    knots = np.unique(np.concatenate([np.linspace(knots[0], knots[-1], 12 * design.recipe.turns + 1), knots]))
+    knots = parts_between(breaks_of(design.flanks[name]), PARTS)
     lost: list[tuple[float, float]] = []
     period = design.recipe.period
     for cut in design.cuts[name]:

@@ -10,20 +10,19 @@ from the front's latest point; where it ends, the grooves on either side are one
 
 from __future__ import annotations
 
-import math
 from itertools import pairwise
 from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
 from camgeo.files.errors import RegionError
+from kin.numeric.angles import TURN
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
     from kin.numeric.arrays import Array, Indices
 
-TURN = 2.0 * math.pi
 SAME = 1e-9  # rad: of points at one angle corners come first
 WIDEST = 0.4817  # of the stretch without a corner, where the sweep begins: an odd share, at which no line has a point
 CROSSED = "the lines on a cylinder of the drum cross"

@@ -29,6 +29,7 @@ from typing import TYPE_CHECKING, NamedTuple
 import numpy as np
 
 from camgeo.curve.curve import CurveError
+from kin.numeric.angles import TURN
 from kin.numeric.records import dataclass
 
 if TYPE_CHECKING:
@@ -106,7 +107,7 @@ class Flank:
     @property
     def period(self) -> float:
         """Shaft angle, rad, after which the flank is touched where it was: that of a turn or of several."""
-        return self.law.period or 2.0 * math.pi
+        return self.law.period or TURN
 
     @property
     def level(self) -> float:

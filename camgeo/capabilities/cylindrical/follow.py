@@ -13,7 +13,7 @@ from camgeo.common.errors import CallError
 from camgeo.common.terminal import escaped
 from camgeo.common.units import UNIT_MM
 from kin.cylindrical.follower import Arm
-from kin.cylindrical.running import Asked, run
+from kin.cylindrical.running import StatedRoller, run
 from kin.cylindrical.unknown import Placed, UnknownError, read_drum
 from kin.numeric.errors import UnsettledError
 from kin.read.errors import ReadError
@@ -27,6 +27,7 @@ KINDS = ("auto", "groove", "rib", "top", "bottom")
 APEX: Literal["axis"] = "axis"
 STEEPEST = 45.0  # degrees, of a cone's half angle
 UNMOVED = 1e-6  # mm of a lower face that lies at 0
+ACROSS = 2  # coordinates of the place of a drum's axis in its file
 ON_ARM = ("length", "offset", "pivot")
 
 
@@ -77,14 +78,14 @@ def _follow(arguments: argparse.Namespace) -> Drawn:
     record = format_of(path)
     if record.units and arguments.units is not None:
         raise CallError(f"{escaped(str(path))}: the file states its unit itself: leave units out")
-    if len(arguments.at) != len(("x", "y")):
+    if len(arguments.at) != ACROSS:
         raise CallError("at is the place of the drum's axis in the file: two lengths in mm")
-    asked = _asked(arguments)
+    stated = _stated(arguments)
     placed = Placed(arguments.axis, arguments.at, math.radians(arguments.turn), mirrored=arguments.rotation == "ccw")
     name = escaped(str(path))
     try:
         drum = read_drum(path, placed, None if arguments.units is None else UNIT_MM[arguments.units])
-        moved = run(drum, asked)
+        moved = run(drum, stated)
     except ReadError as error:
         raise CallError(f"{name}: {error.message}") from error
     except UnknownError as error:
@@ -113,7 +114,7 @@ def _demand_solid(path: Path) -> None:
         raise CallError(f"{escaped(str(path))}: {large}")
 
 
-def _asked(arguments: argparse.Namespace) -> Asked:
+def _stated(arguments: argparse.Namespace) -> StatedRoller:
     """The roller and its guide; raises CallError for what does not go together."""
     inner, outer, (taper, at) = arguments.bears_from, arguments.bears_to, arguments.taper or (0.0, None)
     for name, value in (("from", inner), ("to", outer), ("distance", arguments.distance), ("taper's place", at)):
@@ -135,7 +136,7 @@ def _asked(arguments: argparse.Namespace) -> Asked:
         raise CallError("only an arm leads: give --arm, or leave --leading out")
     if taper != APEX and arguments.taper is not None and not 0.0 < taper < STEEPEST:
         raise CallError(f"a taper lies above 0 and below {STEEPEST:g} degrees")
-    return Asked(
+    return StatedRoller(
         arguments.roller,
         None if arguments.drum == "auto" else arguments.drum,
         inner,

@@ -4,14 +4,13 @@ from __future__ import annotations
 
 import math
 from functools import cached_property
-from typing import TYPE_CHECKING, Any, Literal
+from typing import TYPE_CHECKING, Any, Literal, NamedTuple
 
 import numpy as np
 
 from camgeo.common.terminal import escaped
 from camgeo.motions.recognised import MOST_LEFT, STROKES_BEGIN, Recognised
-from kin.follower.measured import MeasuredMotion
-from kin.follower.recognised import recognised
+from kin.follower.recognised import dwells_of, recognised
 from kin.numeric.angles import TURN
 from kin.numeric.feet import equal_steps
 from kin.numeric.records import dataclass, replace
@@ -31,7 +30,7 @@ if TYPE_CHECKING:
 Flank = Literal["lower", "upper", "middle"]
 
 SPREAD = 3  # steps to both sides, over which a velocity is taken
-ROOM = 0.25  # of the reading, by which round numbers may move the motion
+ROUND = 0.25  # of the reading, by which round numbers may move the motion
 
 
 @dataclass(frozen=True, eq=False)
@@ -63,6 +62,19 @@ class DrumMotion:
     def alike(self, most: int, /) -> tuple[int, ...]:
         """All numbers of waves up to `most`."""
         return tuple(range(1, most + 1))
+
+
+class Segments(NamedTuple):
+    """The motion as a recipe's segments: `rows`, or None and `why` there are none, in words.
+
+    `lines` are text on each stroke, `zero` is the position at lift 0, mm or rad; lifts of a table count from the least
+    position.
+    """
+
+    rows: list[Value] | None
+    lines: list[str]
+    zero: float
+    why: str = ""
 
 
 @dataclass(frozen=True, eq=False)
@@ -103,7 +115,7 @@ class FollowedDrum:
     def position(self) -> Array:
         """Position (n,) of the roller, mm over the lower face, or rad over level; of a rib of both rollers' middle."""
         run = self.run
-        if run.kind in {"top", "bottom"}:
+        if not run.closed:
             return run.lower if run.kind == "top" else run.upper
         if run.kind == "rib" or self.flank == "middle":
             return np.asarray(0.5 * (run.lower + run.upper))
@@ -117,7 +129,7 @@ class FollowedDrum:
     @property
     def play(self) -> Array | None:
         """Play (n,) of a roller in a groove, or of two rollers on a rib over their distance; None of an end cam."""
-        if self.run.kind in {"top", "bottom"}:
+        if not self.run.closed:
             return None
         sense = 1.0 if self.run.kind == "groove" else -1.0
         return np.asarray(sense * (self.run.upper - self.run.lower))
@@ -128,17 +140,14 @@ class FollowedDrum:
         return self.reading / self.lever
 
     @property
-    def room(self) -> float:
+    def rounding(self) -> float:
         """By how much round numbers may move a position, mm or rad: as facets say, or by a share of the reading."""
-        return max(self.run.error, ROOM * self.within)
+        return max(self.run.error, ROUND * self.within)
 
     @cached_property
     def rests(self) -> list[MeasuredDwell]:
         """Dwells in the order of the turn."""
-        nothing = np.zeros(len(self.position))
-        rows, ends = np.stack([self.position, nothing, nothing]), (float(self.position.min()), 0.0)
-        motion = MeasuredMotion(self.unit, self.theta, rows, nothing, nothing, ends, (float(self.position.max()), 0.0))
-        return motion.dwells(self.within)
+        return dwells_of(self.position, self.within, self.unit)
 
     @cached_property
     def programme(self) -> Programme | None:
@@ -151,35 +160,30 @@ class FollowedDrum:
         return DrumMotion(self.position, self.run.error / 3.0, len(self.position) // 2)
 
     @cached_property
-    def told(self) -> tuple[list[Value] | None, list[str], float, str]:
-        """Segments of a recipe, lines on them, the position at their lift 0; or no segments, and the reason.
-
-        Lifts of a table count from the least position.
-        """
+    def segments(self) -> Segments:
+        """The motion as segments of a recipe, as round as the file's facets let them be."""
         least = float(self.position.min())
         if self.programme is None:
-            return None, [], least, "there are no strokes between dwells or turning points"
-        programme, error, most = self.programme, self.room, MOST_LEFT * self.within
-        # as round as the room lets them be, if the motion stays within it; else as the residuals say
+            return Segments(None, [], least, "there are no strokes between dwells or turning points")
+        programme, error, most = self.programme, self.rounding, MOST_LEFT * self.within
+        # as round as it lets them be, if the motion stays within it; else as the residuals say
         angles, levels = programme.uncertainty
         open_ = np.maximum(angles, error * programme.hidden.boundaries), np.maximum(levels, error)
         near = min(programme.greatest + error, most)
         rough = Recognised(self._motion, replace(programme, uncertainty=open_), near, self.scale, self.unit)
         known = Recognised(self._motion, programme, most, self.scale, self.unit)
-        segments, why = rough.segments()
-        if segments is None:
-            segments, why = known.segments()
-        if why == STROKES_BEGIN:
-            first = next((rest for rest in self.rests), None)
-            if first is not None:
-                middle = math.degrees(0.5 * (first.begin + first.end))
-                turned = self.turn + (middle if self.rotation == "ccw" else -middle)
-                why += f": give --turn={math.remainder(turned, 360.0):.6g} to begin in a dwell"
-        if segments is None:
-            return None, [], least, why
+        rows, why = rough.segments()
+        if rows is None:
+            rows, why = known.segments()
+        if why == STROKES_BEGIN and self.rests:
+            middle = math.degrees(0.5 * (self.rests[0].begin + self.rests[0].end))
+            turned = self.turn + (middle if self.rotation == "ccw" else -middle)
+            why += f": give --turn={math.remainder(turned, 360.0):.6g} to begin in a dwell"
+        if rows is None:
+            return Segments(None, [], least, why)
         lines = known.lines()
         lines.append(f"the programme is within {self.scale * self.programme.greatest:.2g} {self.unit} of the motion")
-        return segments, lines, known.zero, ""
+        return Segments(rows, lines, known.zero)
 
     def _at(self, place: int) -> float:
         return math.degrees(float(self.theta[place]))
@@ -207,7 +211,7 @@ class FollowedDrum:
         """The figures as plain data; lengths in mm, angles in degrees."""
         run, scale, position = self.run, self.scale, self.position
         low, high, steep = int(position.argmin()), int(position.argmax()), int(np.abs(run.lean).argmax())
-        segments, lines, zero, why = self.told
+        rows, lines, zero, why = self.segments
         play = self.play
         return {
             "file": self.path.name,
@@ -243,7 +247,7 @@ class FollowedDrum:
                 }
                 for rest in self.rests
             ],
-            "programme": segments,
+            "programme": rows,
             "programme_from": scale * zero,
             "strokes": lines,
             "no_programme": why,
@@ -328,7 +332,7 @@ class FollowedDrum:
 
     def lifts(self) -> str | None:
         """Lifts over the turn as CSV text, from the least position on; None where the recipe has a programme."""
-        if self.told[0] is not None:
+        if self.segments.rows is not None:
             return None
         lift = self.scale * (self.position - float(self.position.min()))
         rows = zip(np.degrees(self.theta).tolist(), (np.round(lift, 9) + 0.0).tolist(), strict=True)

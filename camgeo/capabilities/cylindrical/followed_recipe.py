@@ -52,13 +52,13 @@ class Drawn(FollowedDrum):
 
 def _recipe_of(followed: FollowedDrum, table: str) -> str:
     """Text of a recipe of a drum with this motion: its programme, or lifts that are in the file `table`."""
-    segments, _, zero, _ = followed.told
+    rows, _, zero, _ = followed.segments
     about = f"The motion of {escaped(followed.path.name)} under a {followed.words}, within {followed.reading:.6g} mm"
-    if segments is None:
+    if rows is None:
         reading = followed.scale * followed.within
         motion = f"{{table: {json.dumps(table, ensure_ascii=False)}, reading: {reading:.6g}}}"
     else:
-        motion = f"[{', '.join(_flow(row) for row in segments)}]"
+        motion = f"[{', '.join(_flow(row) for row in rows)}]"
     keys = {**_cam(followed, zero), "motion": motion}
     part = ", ".join(f"{key}: {value:.9g}" for key, value in _part(followed).items())
     lines = [
@@ -90,7 +90,7 @@ def _unsure(followed: FollowedDrum) -> float:
 
 def _ends(followed: FollowedDrum) -> tuple[float, float]:
     """Heights between which the drum lies; of an end cam what lies within its flank."""
-    if followed.run.kind in {"top", "bottom"}:
+    if not followed.run.closed:
         return followed.drum.core(followed.run.floor + 2.0 * _unsure(followed))
     return 0.0, followed.drum.length
 
@@ -106,7 +106,7 @@ def _part(followed: FollowedDrum) -> dict[str, float]:
 def _cam(followed: FollowedDrum, zero: float) -> dict[str, str]:
     """Keys of the cam without its motion; `zero` is the position at lift 0."""
     drum, run, follower, unsure = followed.drum, followed.run, followed.run.follower, _unsure(followed)
-    room, (base, _) = followed.lever * followed.room, _ends(followed)
+    near, (base, _) = followed.lever * followed.rounding, _ends(followed)
     radius, depth = roundest(drum.radius, unsure), roundest(drum.radius, unsure) - roundest(run.floor, unsure)
     roller = [f"radius: {follower.radius:.9g}", f"from: {roundest(follower.inner, unsure):.9g}"]
     if drum.radius - follower.outer > unsure:
@@ -125,13 +125,13 @@ def _cam(followed: FollowedDrum, zero: float) -> dict[str, str]:
     track = f"{{end: {run.kind}}}"
     if run.kind == "groove" and followed.play is not None:
         clear = float(np.median(followed.lever * followed.play * np.cos(run.lean)))
-        clear = roundest(clear, room) if clear > followed.lever * run.error else 0.0
+        clear = roundest(clear, near) if clear > followed.lever * run.error else 0.0
         track = f"{{groove: {{depth: {depth:.9g}, clearance: {clear:.9g}}}}}"
     elif run.kind == "rib":
-        track = f"{{rib: {{distance: {roundest(run.distance or 0.0, room):.9g}, depth: {depth:.9g}}}}}"
+        track = f"{{rib: {{distance: {roundest(run.distance or 0.0, near):.9g}, depth: {depth:.9g}}}}}"
     return {
         "radius": f"{radius:.9g}",
         "track": track,
         "follower": f"{{{', '.join(roller)}}}",
-        "pitch_height": f"{roundest(height - base, room):.9g}",
+        "pitch_height": f"{roundest(height - base, near):.9g}",
     }

@@ -12,6 +12,7 @@ from camgeo.capabilities.cylindrical.bends import bends
 from camgeo.common.rounding import upward
 from camgeo.curve.curve import CurveError
 from camgeo.fit.nodes import ToleranceError
+from kin.numeric.angles import TURN
 from kin.numeric.records import dataclass
 
 if TYPE_CHECKING:
@@ -19,7 +20,6 @@ if TYPE_CHECKING:
     from camgeo.capabilities.cylindrical.flank import Flank
     from kin.numeric.arrays import Array
 
-TURN = 2.0 * math.pi
 LOOKS = 360  # parts of a turn, and
 BLOCKS = 8  # of the depth, over each of which second derivatives are bounded
 SPLITS = 6  # rounds by which a place without a bound is halved
@@ -61,12 +61,18 @@ def breaks_of(flank: Flank) -> Array:
     return np.append(inner if inner.size else np.zeros(1), start + flank.period)
 
 
+def parts_between(knots: Array, count: int) -> Array:
+    """Shaft angles (n + 1,), rad, from the first knot to the last, `count` equal steps to a turn, and all knots."""
+    steps = round(count * (knots[-1] - knots[0]) / TURN)
+    return np.unique(np.concatenate([np.linspace(knots[0], knots[-1], steps + 1), knots]))
+
+
 def bends_over(flank: Flank, knots: Array, low: float, high: float) -> tuple[Array, Bends]:
     """Places (n + 1,), rad, and bounds of second derivatives (n,) between neighbours, from radius `low` to `high`, mm.
 
     The `knots` are among the places. Raises CurveError where no bound is found.
     """
-    look = np.unique(np.concatenate([np.linspace(knots[0], knots[-1], round(LOOKS * flank.period / TURN) + 1), knots]))
+    look = parts_between(knots, LOOKS)
     look = look[np.append(np.diff(look) > SAME, True)]
     edges = np.linspace(low, high, BLOCKS + 1)
     for _ in range(SPLITS):

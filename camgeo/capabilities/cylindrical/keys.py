@@ -1,9 +1,8 @@
-"""Keys of the recipe of a cylindrical cam: the drum, its track and roller, how it is driven, what it turns on."""
+"""Keys of the recipe of a cylindrical cam, with what they take, their defaults and what they mean."""
 
 from __future__ import annotations
 
-import math
-from typing import TYPE_CHECKING, Literal, TypeAlias
+from typing import TYPE_CHECKING
 
 from camgeo.formats.options import RECIPE_UNITS, SOLID_UNITS, TOLERANCE
 from camgeo.motions.inputs import Input
@@ -17,7 +16,6 @@ from camgeo.recipe.figures import LEAST_WALL, PRESSURE_ANGLE
 from camgeo.recipe.keys import CORE
 from camgeo.recipe.machining import MANUFACTURE, MOST_RPM
 from camgeo.recipe.materials import material
-from camgeo.recipe.recipe import ShaftOrder
 from camgeo.registry.formats import FORMATS, Form
 from camgeo.registry.slot import NO_CHECK
 from camgeo.schema.errors import quote
@@ -25,16 +23,9 @@ from camgeo.schema.fields import MOST, Field, FieldTable, Kind, OwnForm, either,
 from camgeo.schema.json_schema import number_schema
 from camgeo.schema.read_scalar import read_numeric
 from camgeo.schema.yaml_source import Scalar, join
-from kin.numeric.records import dataclass, replace
+from kin.numeric.records import replace
 
 if TYPE_CHECKING:
-    from typing import ClassVar
-
-    from camgeo.capabilities.cylindrical.guide import Guide
-    from camgeo.motions.motion import MotionSource
-    from camgeo.part.part import Part
-    from camgeo.recipe.figure_bounds import Bound
-    from camgeo.recipe.materials import Material
     from camgeo.registry.formats import Format
     from camgeo.schema.fields import Schema
     from camgeo.schema.reader import Reader
@@ -43,156 +34,9 @@ if TYPE_CHECKING:
 FLOOR_GAP = 0.5  # mm that a roller stands off the floor where the recipe does not say where it begins
 MOST_RADII = 20  # of one development
 OUTER, PITCH = "outer", "pitch"
-MOST_TURNS = 40
+MOST_TURNS = 40  # of one motion
 APEX = "axis"  # of a cone whose apex is on the drum's axis
 STEEPEST_CONE = 60  # degrees, half angle of a conical roller
-
-
-@dataclass(frozen=True)
-class Groove:
-    """A groove of a depth with a clearance on its upper flank, square to it, mm."""
-
-    depth: float
-    clearance: float
-
-
-@dataclass(frozen=True)
-class Rib:
-    """A rib of a depth between two rollers, whose axes are a distance apart along the cam's axis, mm."""
-
-    depth: float
-    distance: float
-
-
-@dataclass(frozen=True)
-class End:
-    """An end face towards the top, with the metal below, or towards the bottom, to a depth below the blank, mm."""
-
-    facing: Literal["top", "bottom"]
-    depth: float
-
-
-Track: TypeAlias = Groove | Rib | End
-
-
-@dataclass(frozen=True)
-class Roller:
-    """A roller that bears from `inner` to `outer` along its axis, from the cam's, mm.
-
-    It has its radius, mm, at the distance `at`, mm; `taper` is its half angle, rad, 0 of a cylinder. `apex` says that
-    the taper is that of a cone with its apex on the cam's axis, whatever its radius. A `shoe` of that length, mm, from
-    tip to tip turns on a pin in place of the roller, whose radius is half its width; its sides are two arcs.
-    """
-
-    radius: float
-    inner: float
-    outer: float
-    taper: float = 0.0
-    at: float = 0.0
-    apex: bool = False
-    shoe: float | None = None
-
-    @property
-    def word(self) -> str:
-        """What it is called."""
-        return "shoe" if self.shoe is not None else "conical roller" if self.taper else "roller"
-
-    @property
-    def side(self) -> float:
-        """Radius of curvature of its sides, mm: that of the arcs of a shoe."""
-        return self.radius if self.shoe is None else 0.5 * (0.25 * self.shoe**2 / self.radius + self.radius)
-
-    def resized(self, radius: float) -> Roller:
-        """The roller of another radius, mm."""
-        return replace(self, radius=radius, taper=math.atan(radius / self.at) if self.apex else self.taper)
-
-    def size(self, rho: float) -> float:
-        """Radius, mm, at a distance from the cam's axis, mm."""
-        return self.radius + (rho - self.at) * math.tan(self.taper)
-
-
-@dataclass(frozen=True)
-class Drive:
-    """Turns a minute, the load, N, and what touches; None where the recipe does not say.
-
-    The load is along the cam's axis, or on an arm at its roller, square to the arm.
-    """
-
-    rpm: float | None = None
-    load: float | None = None
-    material: Material | None = None
-    roller_material: Material | None = None
-
-
-@dataclass(frozen=True)
-class DrumRecipe(ShaftOrder):
-    """A recipe of a cylindrical cam; lengths in mm, angles in rad.
-
-    `radius` is the blank's; `guide` leads the roller's axis, or the middle between the rollers of a rib, over the lower
-    face, z = 0. The thickness of `part` is the drum's length. The motion repeats after so many `turns`.
-    Measured flanks have a tolerance zone of the width `profile`, None without one.
-    """
-
-    root: ClassVar[str] = "cylindrical"
-
-    radius: float
-    track: Track
-    roller: Roller
-    guide: Guide
-    motion: MotionSource
-    part: Part
-    undercut: Literal["refuse", "shorten"] = "refuse"
-    drive: Drive = Drive()
-    limits: tuple[Bound, ...] = ()
-    turns: int = 1
-    profile: float | None = None
-
-    __repr__ = ShaftOrder.__repr__
-
-    @property
-    def period(self) -> float:
-        """Shaft angle, rad, after which the motion repeats."""
-        return 2.0 * math.pi * self.turns
-
-    @property
-    def level(self) -> float:
-        """Height of the roller's axis at lift 0 over the lower face, mm; of a rib the middle between its rollers."""
-        return self.guide.height(0.0)
-
-    @property
-    def follower_name(self) -> str:
-        """Name of the follower in reports."""
-        return f"{self.roller.word} on an arm" if self.swings else f"{self.roller.word} on a carriage along the axis"
-
-    @property
-    def swings(self) -> bool:
-        """Whether the follower swings on an arm, by angles."""
-        return self.guide.unit == "deg"
-
-    @property
-    def floor(self) -> float:
-        """Radius of the floor of the track, mm."""
-        return self.radius - self.track.depth
-
-    @property
-    def bearing(self) -> tuple[float, float]:
-        """Distances from the axis, mm, between which the walls of a track lead."""
-        return self.roller.inner, min(self.roller.outer, self.radius)
-
-    @property
-    def height(self) -> float:
-        """Length of the drum along its axis, mm."""
-        if self.part.thickness is None:
-            raise ValueError(self.name)
-        return self.part.thickness
-
-    @property
-    def shortens(self) -> bool:
-        """Whether an undercut shortens the line of contact, in place of an error."""
-        return self.undercut == "shorten"
-
-
-# --- keys -------------------------------------------------------------------------------------------------------------
 
 
 def _read_taper(reader: Reader, field: Field, node: Node, path: str) -> float | str | None:
@@ -486,7 +330,7 @@ def _axes_schema(_: Field) -> Schema:
 
 _AXES: OwnForm[Reader] = OwnForm("a list of axes", "a list of axes such as [X, A]", _read_axes, _axes_schema)
 INVERSE, BY_MINUTE = "inverse-time", "per-minute"
-LEAST_PLACES, MOST_PLACES = 2, 9
+LEAST_PLACES, MOST_PLACES = 2, 9  # decimals that a recipe may ask of a program
 PROGRAM = (
     Field(
         "axes",

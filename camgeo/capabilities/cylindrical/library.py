@@ -13,7 +13,7 @@ from camgeo.api.own_kind import KindDesign
 from camgeo.capabilities.cylindrical.checks_of import LENGTH, RIB, design_checks, limits_held
 from camgeo.capabilities.cylindrical.exact import designed
 from camgeo.capabilities.cylindrical.figures import figures_of
-from camgeo.capabilities.cylindrical.keys import Groove, Rib
+from camgeo.capabilities.cylindrical.sheet import points_of
 from camgeo.checks.declared import FORM_CLOSURE, LIMIT, WATERTIGHT
 from camgeo.common.arguments import numbers_of, short_repr, whole_of
 from camgeo.common.clock import Clock
@@ -28,7 +28,7 @@ if TYPE_CHECKING:
     from numpy.typing import ArrayLike
 
     from camgeo.capabilities.cylindrical.design import DrumDesign
-    from camgeo.capabilities.cylindrical.keys import DrumRecipe
+    from camgeo.capabilities.cylindrical.drum_recipe import DrumRecipe
     from camgeo.checks.declaration import Entry
     from camgeo.recipe.export import FileRequest
     from kin.numeric.arrays import Array
@@ -40,6 +40,7 @@ FIELDS = {
     RIB: "cam.track.rib.distance",
     LEAST_WALL: "part",
 }
+"""Keys that a check of the exact drum names where it fails."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -90,9 +91,9 @@ class CylindricalCam(KindDesign):
             raise CallError(f"this drum has no {name} flank")
         if not recipe.floor <= radius <= recipe.radius:
             raise CallError(f"flanks reach from {recipe.floor:.9g} to {recipe.radius:.9g} mm")
-        contact = self._design.flanks[name].on(numbers_of("theta", theta).ravel(), radius)
-        sign = -1.0 if recipe.rotation == "ccw" else 1.0
-        return np.column_stack([radius * np.cos(contact.phi), sign * radius * np.sin(contact.phi), contact.z])
+        places = numbers_of("theta", theta).ravel()
+        points = points_of(self._design.flanks[name], places, np.full(places.shape, float(radius)))
+        return np.asarray(points * [1.0, recipe.sense, 1.0])
 
 
 def cam_of(recipe: DrumRecipe) -> CylindricalCam:
@@ -120,18 +121,20 @@ def remedy(check: Entry, recipe: DrumRecipe) -> str:
     if name == f"{LIMIT}contact-pressure":
         return f"a load of {downward(1e-2 * share * share, 4)} percent"
     if name == f"{LIMIT}play":
-        clearance = recipe.track.clearance if isinstance(recipe.track, Groove) else 0.0
-        return f"a clearance of at most {downward(clearance / recipe.mm * limit / value, 4)} {recipe.units}"
+        return (
+            f"a clearance of at most {downward(recipe.track.clearance / recipe.mm * limit / value, 4)} {recipe.units}"
+        )
     return ""
 
 
 OF_SOLIDS = ("volume", "floor", "blank", "ends")
+"""Checks of every solid, beside those of its flanks and its bore."""
 
 
 def foreseen(recipe: DrumRecipe) -> tuple[Foreseen, ...]:
     """Checks that the report is sure to have."""
     expected = [Foreseen(PRESSURE_ANGLE), Foreseen(LENGTH)]
-    if isinstance(recipe.track, Rib):
+    if RIB in recipe.track.figures:
         expected.append(Foreseen(RIB))
     expected.append(Foreseen(LEAST_WALL))
     expected += [Foreseen(f"{LIMIT}{bound.figure}") for bound in recipe.limits]
@@ -148,7 +151,7 @@ def _of_file(recipe: DrumRecipe, request: FileRequest) -> list[str]:
         return ["units", "contour", "motion"]
     if request.format.program:
         names = ["cutter", "rapid", "ways", "feed", "depth", "contour", "motion"]
-        return [*names, "cleared"] if isinstance(recipe.track, Groove) else names
+        return names if recipe.track.unmilled else [*names, "cleared"]
     names = [WATERTIGHT.name, "contour", "motion", *OF_SOLIDS]
     names += ["bore"] if recipe.part.bore is not None else []
-    return [*names, FORM_CLOSURE.name] if isinstance(recipe.track, (Groove, Rib)) else names
+    return [*names, FORM_CLOSURE.name] if recipe.track.closed else names

@@ -17,7 +17,7 @@ from camgeo.schema.quantity import read_quantity
 from camgeo.schema.scalars import Complaint
 from kin.cylindrical.figures import exact_play
 from kin.cylindrical.inspected import read_flank_points
-from kin.cylindrical.made import UNKNOWNS, UnlikeError, made_drum
+from kin.cylindrical.measured_flanks import UNKNOWNS, UnlikeError, made_drum
 from kin.numeric.angles import TURN, degrees
 from kin.numeric.check import Check, at_most
 from kin.numeric.errors import UnsettledError
@@ -32,7 +32,7 @@ if TYPE_CHECKING:
     from camgeo.common.clock import Clock
     from camgeo.output.extension import FileCall
     from kin.cylindrical.intent import DrumIntent
-    from kin.cylindrical.made import MadeDrum, Measured, Ring
+    from kin.cylindrical.measured_flanks import MadeDrum, Measured, Ring
     from kin.numeric.arrays import Array
 
 PROFILE, MOTION = "made-profile", "made-motion"
@@ -208,7 +208,7 @@ def _section(
             named = ", ".join(str(line) for line in entry["outliers"][:MOST_NAMED])
             more = f" and {len(entry['outliers']) - MOST_NAMED} more" if len(entry["outliers"]) > MOST_NAMED else ""
             rows.append(("  stand out, not in it", f"points of lines {named}{more}"))
-    play = _play(drum, made, mm)
+    play = _play(design, drum, made)
     if play is not None:
         ends = [f"{play[end]:.4g} {play['unit']} at {play[f'{end}_at_deg']:.1f} degrees" for end in ("least", "most")]
         rows.append(("play", " to ".join(ends)))
@@ -269,11 +269,9 @@ def _ring(
     }
 
 
-def _play(drum: DrumIntent, made: MadeDrum, mm: float) -> dict[str, Any] | None:
+def _play(design: DrumDesign, drum: DrumIntent, made: MadeDrum) -> dict[str, Any] | None:
     """Play between both flanks of a groove, where each has a ring at about the same radius; None without."""
-    from kin.cylindrical.intent import Groove
-
-    if not isinstance(drum.track, Groove):
+    if "play" not in design.recipe.track.figures:
         return None
     pairs = [
         (low, high)
@@ -286,13 +284,14 @@ def _play(drum: DrumIntent, made: MadeDrum, mm: float) -> dict[str, Any] | None:
     low, high = pairs[0]
     theta = equal_steps(len(low.error))
     told = drum.follower.told(1.0) / (1.0 if drum.follower.arm is None else drum.follower.arm.length)
-    play = told * (exact_play(drum, theta) if drum.track.clearance else np.zeros(len(theta))) + high.error - low.error
-    scale = 1.0 if drum.follower.unit == "deg" else 1.0 / mm
+    play = told * exact_play(drum, theta) + high.error - low.error
+    scale = 1.0 if drum.follower.unit == "deg" else 1.0 / design.recipe.mm
+    unit = in_units(design.recipe, None, drum.follower.unit)[1]
     least, most = int(np.argmin(play)), int(np.argmax(play))
     return {
         "least": float(scale * play[least]),
         "least_at_deg": least * 360.0 / len(play),
         "most": float(scale * play[most]),
         "most_at_deg": most * 360.0 / len(play),
-        "unit": drum.follower.unit if drum.follower.unit == "deg" or mm == 1.0 else "in",
+        "unit": unit,
     }

@@ -50,34 +50,23 @@ def make(design: DrumDesign, clock: Clock, request: FileRequest, path: Path) -> 
     Raises RecipeErrors where the tolerance cannot be held or no sound file can be made, OSError where it cannot be
     written.
     """
-    recipe, kind = design.recipe, request.kind
-    if kind == "csv":
+    recipe = design.recipe
+    if request.kind == "csv":
         from camgeo.capabilities.cylindrical.tables import write_csv
 
         with clock.stage("table"):
             write_csv(design, request, path)
         return Made(FileResult(path, request, units=UNIT_MM[request.unit_for(recipe.units)]))
     with refusals(recipe, request, partial(in_recipe, recipe)):
-        if kind == "dxf":
-            return _development(design, clock, request, path)
-        if kind == "glb":
-            return _view(design, clock, request, path)
-        if kind == "step":
-            return _surfaces(design, clock, request, path)
-        if request.format.program:
-            return _program(design, clock, request, path)
-        return _mesh(design, clock, request, path)
-
-
-def _tolerance(design: DrumDesign, request: FileRequest) -> float:
-    return request.tolerance or design.recipe.export.tolerance
+        maker = _program if request.format.program else _MAKERS.get(request.kind, _mesh)
+        return maker(design, clock, request, path)
 
 
 def _judged(
     design: DrumDesign, clock: Clock, request: FileRequest, path: Path, fit: tuple[int | None, Bound]
 ) -> Made[DrumVerdict]:
     """A written file with kin's verdict on it; `fit` is number of points or patches, None for a mesh, and bound."""
-    tolerance = _tolerance(design, request)
+    tolerance = design.recipe.tolerance(request)
     with clock.stage(f"judge {request.kind}"):
         verdict = judged_file(design, path, request, tolerance)
     return Made(FileResult(path, request, tolerance, *fit, units=verdict.units), verdict.checks, verdict)
@@ -88,7 +77,7 @@ def _mesh(design: DrumDesign, clock: Clock, request: FileRequest, path: Path) ->
     if write is None:
         raise ValueError(f"{request.kind} holds no mesh")
     with clock.stage(f"mesh {request.kind}"):
-        mesh, facts = drum_mesh(design, _tolerance(design, request), numbers_of(request.kind, mm))
+        mesh, facts = drum_mesh(design, design.recipe.tolerance(request), numbers_of(request.kind, mm))
     with clock.stage(f"write {request.kind}"):
         write(path, [Item("drum", mesh)], recipe.name, mm, recipe.about)
     return _judged(design, clock, request, path, (None, facts.bound))
@@ -100,7 +89,7 @@ def _surfaces(design: DrumDesign, clock: Clock, request: FileRequest, path: Path
 
     recipe, units = design.recipe, request.unit_for(design.recipe.units)
     with clock.stage("surfaces step"):
-        solid = drum_solid(design, _tolerance(design, request))
+        solid = drum_solid(design, design.recipe.tolerance(request))
     with clock.stage("write step"):
         write_shape(path, solid.shape, units=units, name=recipe.name, about=recipe.about or "cylindrical cam")
     return _judged(design, clock, request, path, (solid.pieces, Bound(solid.off, solid.off)))
@@ -109,7 +98,7 @@ def _surfaces(design: DrumDesign, clock: Clock, request: FileRequest, path: Path
 def _view(design: DrumDesign, clock: Clock, request: FileRequest, path: Path) -> Made[DrumVerdict]:
     """The drum as it turns, to look at."""
     with clock.stage("mesh glb"):
-        mesh, _ = drum_mesh(design, _tolerance(design, request), numbers_of("glb", 1.0))
+        mesh, _ = drum_mesh(design, design.recipe.tolerance(request), numbers_of("glb", 1.0))
     with clock.stage("write glb"):
         actor = Actor("drum", mesh, steady_turn(design.recipe.rotation), COLOURS[0])
         write_glb(path, [actor], title=design.recipe.name)
@@ -121,7 +110,7 @@ def _development(design: DrumDesign, clock: Clock, request: FileRequest, path: P
 
     mm = UNIT_MM[request.unit_for(design.recipe.units)]
     with clock.stage("write dxf"):
-        fit = write_development(design, request, path, _tolerance(design, request), mm)
+        fit = write_development(design, request, path, design.recipe.tolerance(request), mm)
     return _judged(design, clock, request, path, fit)
 
 
@@ -130,6 +119,10 @@ def _program(design: DrumDesign, clock: Clock, request: FileRequest, path: Path)
 
     with clock.stage(f"write {request.kind}"):
         fit = write_program(
-            design, request, path, _tolerance(design, request), UNIT_MM[request.unit_for(design.recipe.units)]
+            design, request, path, design.recipe.tolerance(request), UNIT_MM[request.unit_for(design.recipe.units)]
         )
     return _judged(design, clock, request, path, fit)
+
+
+_MAKERS = {"dxf": _development, "glb": _view, "step": _surfaces}
+"""Makers of files by their formats, beside programs and meshes."""

@@ -17,7 +17,7 @@ import numpy as np
 from camgeo.capabilities.cylindrical.bends import bends
 from camgeo.capabilities.cylindrical.crossings import lost_of
 from camgeo.capabilities.cylindrical.grid import SAME, grid_of
-from camgeo.capabilities.cylindrical.sheet import points_of
+from camgeo.capabilities.cylindrical.sheet import off_chords, points_of
 from camgeo.curve.curve import CurveError
 from camgeo.fit.nodes import ToleranceError
 from kin.numeric.records import dataclass
@@ -32,7 +32,7 @@ if TYPE_CHECKING:
     from kin.numeric.arrays import Array
 
 GUARD = 0.5  # of a column, least width of a cell beside a line
-ROUNDS, MORE_ROWS = 7, 1.5
+ROUNDS, MORE_ROWS = 7, 1.5  # of finer rows, and how many times as many there are in each
 FINER = (1, 2, 3, 4)  # times as many columns beside a line
 BESIDE = 1e-3  # rad to either side of an edge, where a break would leave a sliver
 STEP_SEEN = 1e-9  # of the acceleration's range: a smaller step is none
@@ -190,19 +190,14 @@ def _cells_off(flank: Flank, theta: Array, rows: Array) -> float:
 
 def _edges_off(design: DrumDesign, rows: Array) -> float:
     """Distance, mm, of corners' lines half way between two rows from the chord between them."""
-    most = 0.0
     middle = 0.5 * (rows[:-1] + rows[1:])
-    for crossing in design.crossings:
-        for corner in crossing.corners.values():
-            points, between = (_places(corner, r) for r in (rows, middle))
-            chord = points[1:] - points[:-1]
-            share = np.sum((between - points[:-1]) * chord, axis=1) / np.sum(chord * chord, axis=1)
-            off = np.linalg.norm(between - points[:-1] - share[:, None] * chord, axis=1)
-            most = max(most, float(off.max()))
-    return most
+    lines = [line_of(corner, rows) for corner in corners_of(design.crossings)]
+    between = [line_of(corner, middle) for corner in corners_of(design.crossings)]
+    return max((off_chords(*pair) for pair in zip(lines, between, strict=True)), default=0.0)
 
 
-def _places(corner: Corner, r: Array) -> Array:
+def line_of(corner: Corner, r: Array) -> Array:
+    """Points (n, 3), mm, of a corner's line on cylinders of radii (n,), mm."""
     return points_of(corner.flanks[0], corner.at(r)[0], r)
 
 

@@ -102,9 +102,8 @@ def _drawings(design: DrumDesign, tolerance: float) -> list[tuple[str, Sequence[
 
 
 def _mesh(design: DrumDesign, request: FileRequest) -> Mesh:
-    tolerance = request.tolerance or design.recipe.export.tolerance
     with refusals(design.recipe, request, partial(in_recipe, design.recipe)):
-        return drum_mesh(design, tolerance, numbers_of(request.kind, 1.0))[0]
+        return drum_mesh(design, design.recipe.tolerance(request), numbers_of(request.kind, 1.0))[0]
 
 
 DRUMS = OwnKind(

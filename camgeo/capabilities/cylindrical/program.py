@@ -14,7 +14,7 @@ import numpy as np
 
 from camgeo.capabilities.cylindrical.angles import parted
 from camgeo.capabilities.cylindrical.figures import steepest
-from camgeo.capabilities.cylindrical.keys import INVERSE, MOST_PLACES, End, Groove
+from camgeo.capabilities.cylindrical.keys import INVERSE, MOST_PLACES
 from camgeo.capabilities.cylindrical.ways import (
     ENDS,
     NEAR,
@@ -46,7 +46,7 @@ SETTING = 0.4  # of the tolerance, that a smaller cutter may be off by where it 
 CHORDS = 0.6  # of what the setting and rounding leave of it, for lines between blocks: the judge's proof takes some
 OVERLAP = math.radians(5.0)  # by which a pass goes on beyond a turn
 ROUNDED = 0.5  # of the tolerance, that words of few decimals may take
-LEAST_PLACES = 3
+FEWEST = 3  # decimals, where a recipe does not ask for a number
 CORNER = 1e-7  # mm per rad: a jump of the velocity below this is rounding
 DIGITS = 4  # of a half angle in a remedy, degrees
 LEAST_ROOM = 0.01  # mm off a flank, below which the cutter goes down on it
@@ -67,6 +67,11 @@ class _Plan(NamedTuple):
 
     steps: list[Step]
     off: Bound
+
+
+def _key(design: DrumDesign, request: FileRequest, name: str) -> str:
+    """Path of an option of a requested program."""
+    return f"{design.recipe.field_of(request)}.{request.kind}.{name}"
 
 
 def cutting_of(design: DrumDesign, request: FileRequest) -> Cutting:
@@ -96,17 +101,18 @@ def write_program(
     high = (design.recipe.radius + own["safe_height"]) / mm
     if high > LARGEST:
         most = downward((LARGEST * mm - design.recipe.radius) / design.recipe.mm, 4)
-        field = f"{design.recipe.field_of(request)}.{request.kind}.safe_height"
         why = "lies higher than a program tells"
-        raise design.recipe.error(field, why, None, f"give at most {most} {design.recipe.units}")
+        raise design.recipe.error(
+            _key(design, request, "safe_height"), why, None, f"give at most {most} {design.recipe.units}"
+        )
     for k, (step, points, _) in enumerate(passes, start=1):
         lines.append(f"({comment(f'{step.name}, pass {k} of {len(passes)}')})")
         lines += written.cut(step, points)
     if written.fastest > LARGEST:
         most = downward(own["feed"] * LARGEST / written.fastest / design.recipe.mm, 4)
-        field = f"{design.recipe.field_of(request)}.{request.kind}.feed"
         why = "makes the inverse time of the shortest block larger than is read"
-        raise design.recipe.error(field, why, None, f"give at most {most}, or feed_mode: per-minute")
+        remedy = f"give at most {most}, or feed_mode: per-minute"
+        raise design.recipe.error(_key(design, request, "feed"), why, None, remedy)
     lines += ["G94", "M5", "M30", ""]
     path.write_bytes("\n".join(lines).encode("ascii"))
     worst = max(off for _, _, off in passes)
@@ -120,9 +126,8 @@ def _planned(design: DrumDesign, request: FileRequest, within: float) -> _Plan:
     recipe, own = design.recipe, request.own
     beside, cutter = "Y" in own["axes"], Cutter(0.5 * own["cutter"], own.get("taper", 0.0))
     cut = own.get("depth_of_cut", recipe.track.depth)
-    field = f"{recipe.field_of(request)}.{request.kind}"
     flanks = _own_ways(design, cutter, within, beside)
-    _demand_known(design, flanks, f"{field}.cutter")
+    _demand_known(design, flanks, _key(design, request, "cutter"))
     finish: list[tuple[str, Way]] = []
     left = deep = 0.0
     ends = recipe.roller.inner, recipe.radius
@@ -149,7 +154,8 @@ def _planned(design: DrumDesign, request: FileRequest, within: float) -> _Plan:
     if len(steps) > MOST_PASSES:
         least = cut * len(steps) / MOST_PASSES / recipe.mm
         remedy = f"give at least {upward(least, 4)} {recipe.units}"
-        raise recipe.error(f"{field}.depth_of_cut", f"makes more than {MOST_PASSES} passes", None, remedy)
+        field = _key(design, request, "depth_of_cut")
+        raise recipe.error(field, f"makes more than {MOST_PASSES} passes", None, remedy)
     return _Plan(steps, Bound(left, deep))
 
 
@@ -159,7 +165,7 @@ def _own_ways(design: DrumDesign, cutter: Cutter, within: float, beside: bool) -
     Both of a groove have one if the cutter is as large as their roller. The end of a cutter with the roller's taper may
     stand a share of the tolerance off the floor, so that both cones are one.
     """
-    recipe, track = design.recipe, design.recipe.track
+    recipe = design.recipe
     end, near = recipe.floor, 0.0
     if cutter.taper:
         apart = recipe.roller.size(end) - cutter.radius
@@ -170,8 +176,8 @@ def _own_ways(design: DrumDesign, cutter: Cutter, within: float, beside: bool) -
     ]
     if not all(way.alike for _, way in ways):  # a smaller one goes down to the floor
         ways = [(name, way if way.alike else replace(way, end=recipe.floor)) for name, way in ways]
-    if isinstance(track, Groove) and not track.clearance and ways[0][1].alike:
-        return [("groove", ways[0][1])]
+    if recipe.track.same_roller and ways[0][1].alike:
+        return [(recipe.track.noun, ways[0][1])]
     return ways
 
 
@@ -182,7 +188,7 @@ def _demand_known(design: DrumDesign, flanks: list[tuple[str, Way]], field: str)
     if all(way.alike for _, way in flanks) or not (any(design.tips.values()) or cornered):
         return
     why = "a corner of the motion" if cornered else "an undercut"
-    if isinstance(recipe.track, Groove) and recipe.track.clearance:
+    if recipe.track.clearance:
         raise design.error("cam.track.groove.clearance", f"with {why}, a program cuts no clearance", "leave it out")
     raise design.error(
         field, f"with {why}, only a cutter as large as the roller leaves the flank", f"give {_like(design)}"
@@ -200,25 +206,23 @@ def _like(design: DrumDesign) -> str:
 
 def _needs_beside(design: DrumDesign, request: FileRequest, way: Way) -> RecipeErrors:
     """Error of a cutter that would have to stand beside the drum's axis."""
-    recipe = design.recipe
     problem = "with its axis through the drum's, only a cutter as large as the roller leaves such a flank"
     remedy = "let the machine move across the drum: axes: [X, Y, A]"
     if way.flank.guide.radial:
         remedy = f"{remedy}, or give {_like(design)}"
-    return recipe.error(f"{recipe.field_of(request)}.{request.kind}.axes", problem, None, remedy)
+    return design.recipe.error(_key(design, request, "axes"), problem, None, remedy)
 
 
 def _refused(design: DrumDesign, request: FileRequest, way: Way, off: Off, over: float) -> RecipeErrors:
     """Error of a cutter that is off by `over` times what it may."""
     recipe, flank = design.recipe, way.flank
-    field = f"{recipe.field_of(request)}.{request.kind}"
     remedies = [] if way.beside else ["let the machine move across the drum: axes: [X, Y, A]"]
-    tolerance = (request.tolerance or recipe.export.tolerance) * over / 0.95 / recipe.mm
+    tolerance = recipe.tolerance(request) * over / 0.95 / recipe.mm
     if way.alike:
         far = f"{max(off) / recipe.mm:.3g} {recipe.units}"
         problem = f"with its axis through the drum's, and the roller's beside it, the cutter may be off by {far}"
         remedies.append(f"give a tolerance of at least {upward(tolerance, 3)} {recipe.units}")
-        return recipe.error(f"{field}.axes", problem, None, ", or ".join(remedies))
+        return recipe.error(_key(design, request, "axes"), problem, None, ", or ".join(remedies))
     if abs(flank.taper - way.cutter.taper) > TAPERS:
         remedies.append(f"give {_like(design)}")
     else:
@@ -237,7 +241,7 @@ def _refused(design: DrumDesign, request: FileRequest, way: Way, off: Off, over:
         else "with its axis through the drum's it is right at one radius alone, and cuts too deep above that"
     )
     value = f"{2.0 * way.cutter.radius / recipe.mm:.9g} {recipe.units}"
-    return recipe.error(f"{field}.cutter", problem, value, ", or ".join(remedies))
+    return recipe.error(_key(design, request, "cutter"), problem, value, ", or ".join(remedies))
 
 
 def _rough(design: DrumDesign, request: FileRequest, flanks: list[tuple[str, Way]]) -> list[Step]:
@@ -250,10 +254,9 @@ def _rough(design: DrumDesign, request: FileRequest, flanks: list[tuple[str, Way
         at = middle if way.cutter.taper >= way.flank.taper else way.end
         rough = replace(way, flank=replace(way.flank, radius=way.flank.radius - less), at=at)
         if not (way.beside or rough.flank.radial):
-            field = f"{recipe.field_of(request)}.{request.kind}.allowance"
             problem = "with its axis through the drum's, no pass leaves any of a roller that is a cone or beside it"
             remedy = "leave it out, or let the machine move across the drum: axes: [X, Y, A]"
-            raise recipe.error(field, problem, None, remedy)
+            raise recipe.error(_key(design, request, "allowance"), problem, None, remedy)
         ways.append((f"{name}, rough", rough))
     cut = own.get("depth_of_cut", recipe.track.depth)
     return [Step(way, z, name) for name, way, z in _down(recipe.radius, cut, ways)]
@@ -294,17 +297,16 @@ def _points(design: DrumDesign, way: Way, chords: float) -> tuple[Array, float]:
     theta = np.concatenate([theta, [end], theta[(theta > 0.0) & (theta < OVERLAP)] + end, [end + OVERLAP]])
     if way.flank.side > 0:  # metal on the right of a cutter that turns clockwise
         theta = theta[::-1]
-    if design.recipe.rotation == "ccw":
+    if design.recipe.mirrored:
         theta = theta[::-1]
     a, x, y = way.places(theta)
-    groove = isinstance(design.recipe.track, Groove)
-    less = way.less if groove else BESIDE * way.cutter.radius
+    less = BESIDE * way.cutter.radius if design.recipe.track.unmilled else way.less
     away = -way.flank.side * less
     if less > LEAST_ROOM:
         a, y = (np.concatenate([row[:1], row, row[-1:]]) for row in (a, y))
         x = np.concatenate([[x[0] + away], x, [x[-1] + away]])
     points = np.column_stack([a, x, y])
-    if design.recipe.rotation == "ccw":
+    if design.recipe.mirrored:
         points *= [-1.0, 1.0, -1.0]
     return points, off
 
@@ -323,13 +325,13 @@ def _rounding(design: DrumDesign, request: FileRequest, count: int, mm: float) -
 def _places(design: DrumDesign, request: FileRequest, tolerance: float, mm: float) -> int:
     """Decimals of the words: as the request states, or as few as take a small share of the tolerance."""
     recipe, stated = design.recipe, request.own.get("decimals")
-    for count in range(LEAST_PLACES if stated is None else stated, MOST_PLACES + 1):
+    for count in range(FEWEST if stated is None else stated, MOST_PLACES + 1):
         limit = (SHARE if stated is None else ROUNDED) * tolerance
         if _rounding(design, request, count, mm) <= limit:
             if stated is not None and count > stated:
-                field = f"{recipe.field_of(request)}.{request.kind}.decimals"
                 problem = f"rounding takes {_rounding(design, request, stated, mm) / recipe.mm:.3g} {recipe.units}"
-                raise recipe.error(field, f"{problem} of the tolerance", str(stated), f"give at least {count}")
+                field, remedy = _key(design, request, "decimals"), f"give at least {count}"
+                raise recipe.error(field, f"{problem} of the tolerance", str(stated), remedy)
             return count
     return MOST_PLACES
 
@@ -356,9 +358,8 @@ def _head(design: DrumDesign, request: FileRequest, tolerance: float, mm: float)
         if own.get("feed_mode", INVERSE) == INVERSE
         else f"feed: G94, along the path at a radius of {blank}: the control has to count A at that radius",
     ]
-    if not isinstance(recipe.track, Groove):
-        beside = "within the flank" if isinstance(recipe.track, End) else "beside the rib"
-        texts.append(f"not milled: the drum {beside} farther off the flank than the cutter is wide")
+    if recipe.track.unmilled:
+        texts.append(f"not milled: the drum {recipe.track.unmilled} farther off the flank than the cutter is wide")
     for text in filter(None, texts):
         yield f"({comment(text)})"
 

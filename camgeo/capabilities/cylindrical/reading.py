@@ -5,20 +5,10 @@ from __future__ import annotations
 import math
 from typing import TYPE_CHECKING, Literal
 
+from camgeo.capabilities.cylindrical.drum_recipe import Drive, DrumRecipe, Roller
 from camgeo.capabilities.cylindrical.guide import Arm, Carriage
-from camgeo.capabilities.cylindrical.keys import (
-    APEX,
-    FILES,
-    FLOOR_GAP,
-    NEEDED,
-    RECIPE,
-    Drive,
-    DrumRecipe,
-    End,
-    Groove,
-    Rib,
-    Roller,
-)
+from camgeo.capabilities.cylindrical.keys import APEX, FILES, FLOOR_GAP, NEEDED, RECIPE
+from camgeo.capabilities.cylindrical.tracks import End, Groove, Rib
 from camgeo.common.rounding import downward
 from camgeo.motions.motion import check_filled
 from camgeo.part import bore
@@ -29,20 +19,20 @@ from camgeo.recipe.figure_bounds import build_bounds, check_bounds
 from camgeo.recipe.own_kind import begin, entry_at, finish
 from camgeo.recipe.recipe import Verify
 from camgeo.schema.fields import either
+from kin.numeric.angles import TURN
 from kin.numeric.records import replace
 
 if TYPE_CHECKING:
     from pathlib import Path
 
     from camgeo.capabilities.cylindrical.guide import Guide
-    from camgeo.capabilities.cylindrical.keys import Track
+    from camgeo.capabilities.cylindrical.tracks import Track
     from camgeo.recipe.document import Document
     from camgeo.schema.errors import RecipeError
     from camgeo.schema.reader import Reader, Values
     from camgeo.schema.yaml_source import Source
 
 ANGLES = 1  # what a disc would be judged at: a drum is judged at all angles
-TURN = 2.0 * math.pi
 NOT_YET = {
     "cam.sizing": "give the radius of the blank",
     "manufacture": "a program has its cutter and feeds beside its axes, {gcode: {axes: [X, A], cutter: 20}}",

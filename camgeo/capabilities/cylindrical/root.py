@@ -11,7 +11,7 @@ if TYPE_CHECKING:
     from pathlib import Path
 
     from camgeo.api.own_kind import Library
-    from camgeo.capabilities.cylindrical.keys import DrumRecipe
+    from camgeo.capabilities.cylindrical.drum_recipe import DrumRecipe
     from camgeo.output.extension import FileCall
     from camgeo.output.own_kind import OwnKind
     from camgeo.schema.fields import FieldTable

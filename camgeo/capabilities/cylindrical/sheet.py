@@ -8,9 +8,10 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from camgeo.capabilities.cylindrical.bends import bends
-from camgeo.capabilities.cylindrical.grid import TURN, grid_of
+from camgeo.capabilities.cylindrical.grid import grid_of
 from camgeo.capabilities.cylindrical.undercut import cut_at
 from camgeo.fit.nodes import ToleranceError
+from kin.numeric.angles import TURN
 from kin.numeric.records import dataclass
 
 if TYPE_CHECKING:
@@ -24,7 +25,8 @@ if TYPE_CHECKING:
 
 FOR_CELLS = 0.8  # of a tolerance: cells at the edge of a cut are wider by SNAP, and the edge is off itself
 SNAP = 0.1  # of a column: a place so near the edge of a cut becomes a point of it
-FIRST_ROWS, MORE_ROWS, LESS, ROUNDS = 12, 1.5, 0.7, 8
+FIRST_ROWS = 12  # on which a cut is known at first
+MORE_ROWS, LESS, ROUNDS = 1.5, 0.7, 8  # times as many rows, and times FOR_CELLS, in each further round
 NEAR_TIP = 1e-6  # of the depth of a cut: rows so near its tip are not cut
 
 
@@ -129,7 +131,11 @@ def _edge_off(flank: Flank, cut: Cut) -> float:
     r = np.append(cut.r, cut.tip.r)
     ends = points_of(flank, np.append(cut.first, cut.tip.at), r)
     middle = cut_at(flank, cut.tip, 0.5 * (r[:-1] + r[1:]))
-    between = points_of(flank, middle.first, middle.r)
+    return off_chords(ends, points_of(flank, middle.first, middle.r))
+
+
+def off_chords(ends: Array, between: Array) -> float:
+    """Greatest distance, mm, of points (n, 3) from the lines between neighbours of others (n + 1, 3)."""
     chord = ends[1:] - ends[:-1]
     share = np.sum((between - ends[:-1]) * chord, axis=1) / np.sum(chord * chord, axis=1)
     return float(np.sqrt(np.sum((between - ends[:-1] - share[:, None] * chord) ** 2, axis=1)).max())

@@ -12,14 +12,13 @@ import numpy as np
 
 from camgeo.capabilities.cylindrical.crossings import sampled
 from camgeo.capabilities.cylindrical.development import drawn
-from camgeo.capabilities.cylindrical.keys import Rib
 from kin.cylindrical.intent import Developed
+from kin.numeric.angles import TURN
 
 if TYPE_CHECKING:
     from camgeo.capabilities.cylindrical.design import DrumDesign
     from kin.numeric.arrays import Array, Indices, Mask
 
-TURN = 2.0 * math.pi
 PLACES = 240  # of a turn, at which heights are known
 COARSE = 2e-4  # of the blank: to this a line is drawn
 DEEP = 5  # shells from the floor to the blank, of which the blank is the last
@@ -54,12 +53,12 @@ def shell(design: DrumDesign, radius: float) -> Shell:
     """The metal on the cylinder of a radius, mm, above the floor."""
     if design.recipe.turns > 1:
         return Shell(radius, tuple(_islands(design, radius)))
-    flanks = {name: height(design, name, radius) for name in design.flanks}
-    if isinstance(design.recipe.track, Rib):
-        return Shell(radius, ((flanks["upper"], flanks["lower"]),))
-    ends = {"lower": np.zeros(PLACES), "upper": np.full(PLACES, design.recipe.height)}
-    bands = [(ends[name], z) if name == "lower" else (z, ends[name]) for name, z in flanks.items()]
-    return Shell(radius, tuple(bands))
+    rising = design.recipe.track.rising
+    edges = [height(design, name, radius) for name in rising]
+    # metal lies below a lower flank and above an upper one
+    edges = [np.zeros(PLACES), *edges] if rising[0] == "lower" else edges
+    edges = [*edges, np.full(PLACES, design.recipe.height)] if rising[-1] == "upper" else edges
+    return Shell(radius, tuple(zip(edges[::2], edges[1::2], strict=True)))
 
 
 def _islands(design: DrumDesign, radius: float) -> list[tuple[Array, Array]]:
@@ -104,7 +103,7 @@ def _columns(design: DrumDesign, radius: float) -> list[list[tuple[float, float]
     low, high = (
         row.reshape(design.recipe.turns, -1)[:, :: row.size // design.recipe.turns // PLACES].T for row in rows
     )
-    if design.recipe.rotation == "ccw":
+    if design.recipe.mirrored:
         low, high = (np.roll(part[::-1], 1, axis=0) for part in (low, high))
     found = []
     for begins, ends in zip(low, high, strict=True):

@@ -22,7 +22,6 @@ from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
-from camgeo.capabilities.cylindrical.keys import Groove
 from camgeo.common.rounding import downward, upward
 
 if TYPE_CHECKING:
@@ -43,12 +42,6 @@ class Bend(NamedTuple):
     radius: float
 
 
-def clearance(design: DrumDesign) -> float:
-    """Clearance of the groove, mm."""
-    track = design.recipe.track
-    return track.clearance if isinstance(track, Groove) else 0.0
-
-
 def angle_of(design: DrumDesign, crossing: Crossing) -> float:
     """Angle between two tracks, rad, at that end of the shoe where they are nearer to one another's direction."""
     flank = design.flanks["lower"]
@@ -57,7 +50,7 @@ def angle_of(design: DrumDesign, crossing: Crossing) -> float:
 
 def longest(design: DrumDesign) -> Bend:
     """The bend that takes the shortest shoe."""
-    radius, j = design.recipe.roller.radius, clearance(design)
+    radius, j = design.recipe.roller.radius, design.recipe.track.clearance
 
     def bent(theta: Array, rho: float, sign: float) -> Array:
         """Curvature of the path to one side on a cylinder, 1/mm, on that side of a break where it is greater."""
@@ -81,19 +74,11 @@ def longest(design: DrumDesign) -> Bend:
     return min(bends, default=Bend(math.inf, 0.0, math.inf))
 
 
-def half_width(design: DrumDesign, along: float) -> float:
-    """Half the width of the shoe, mm, at a distance from its middle, mm; 0 beyond its tips."""
-    roller = design.recipe.roller
-    side = roller.side
-    return max(math.sqrt(max(side * side - along * along, 0.0)) - (side - roller.radius), 0.0)
-
-
 def play(design: DrumDesign) -> tuple[float, Crossing]:
     """Greatest play, mm, to either side, of a shoe in the middle of a gap, and the crossing."""
-    found = [
-        (design.recipe.roller.radius - half_width(design, 0.5 * gap), -each.first, each)
-        for gap, each in zip(design.gaps, design.crossings, strict=True)
-    ]
+    roller = design.recipe.roller
+    widths = roller.half_width(0.5 * np.array(design.gaps)).tolist()
+    found = [(roller.radius - half, -each.first, each) for half, each in zip(widths, design.crossings, strict=True)]
     value, _, crossing = max(found, key=lambda each: each[:2])
     return value, crossing
 

@@ -14,8 +14,7 @@ import numpy as np
 
 from camgeo.capabilities.cylindrical.filling import Run, Sweep
 from camgeo.capabilities.cylindrical.grid import sag, widest
-from camgeo.capabilities.cylindrical.keys import End, Groove
-from camgeo.capabilities.cylindrical.patches import corners_of, patches_of
+from camgeo.capabilities.cylindrical.patches import corners_of, line_of, patches_of
 from camgeo.capabilities.cylindrical.sheet import points_of
 from camgeo.files.errors import RegionError
 from camgeo.files.mesh import Mesh, MeshFacts
@@ -23,6 +22,7 @@ from camgeo.files.prism import rounded_loop
 from camgeo.files.triangulate import disc, region
 from camgeo.fit.bound import Bound
 from camgeo.fit.nodes import ToleranceError
+from kin.numeric.angles import TURN
 
 if TYPE_CHECKING:
     from camgeo.capabilities.cylindrical.design import DrumDesign
@@ -31,7 +31,6 @@ if TYPE_CHECKING:
     from camgeo.files.triangulate import Triangles
     from kin.numeric.arrays import Array, Indices
 
-TURN = 2.0 * math.pi
 ROUNDINGS = math.sqrt(1.5)  # of a point in space, in those of a plane point
 LEAST_EDGES = 6  # of a circle
 
@@ -163,32 +162,16 @@ def drum_mesh(design: DrumDesign, tolerance: float, precision: Precision) -> tup
         return _closed(design, body, ends, _bore(body, design, tolerance), (off, tolerance))
     sheets = {name: design.sheet(name, fine) for name in design.flanks}
     bore = _bore(body, design, tolerance)
-    bottom, top = 0.0, recipe.height
-    core, blank = recipe.floor, recipe.radius
-    track = recipe.track
-    if isinstance(track, Groove):
-        inner = body.circle(blank, bottom)
-        edge, foot = body.flank(sheets["lower"], inwards=True)
-        body.strip(inner, edge)
-        rim, root = body.flank(sheets["upper"], inwards=False)
-        body.strip(foot, root)
-        outer = body.circle(blank, top)
-        body.strip(rim, outer)
-    elif isinstance(track, End):
-        facing = track.facing == "top"
-        inner = body.circle(blank if facing else core, bottom)
-        edge, foot = body.flank(sheets["lower" if facing else "upper"], inwards=facing)
-        outer = body.circle(core if facing else blank, top)
-        body.strip(inner, edge if facing else foot)
-        body.strip(foot if facing else edge, outer)
-    else:
-        inner = body.circle(core, bottom)
-        rim, root = body.flank(sheets["upper"], inwards=False)
-        body.strip(inner, root)
-        edge, foot = body.flank(sheets["lower"], inwards=True)
-        body.strip(rim, edge)
-        outer = body.circle(core, top)
-        body.strip(foot, outer)
+    core, blank, rising = recipe.floor, recipe.radius, recipe.track.rising
+    inner = below = body.circle(blank if rising[0] == "lower" else core, 0.0)
+    for name in rising:
+        # the section runs down a lower flank from the blank, and up an upper one from the floor
+        inwards = name == "lower"
+        head, foot = body.flank(sheets[name], inwards=inwards)
+        body.strip(below, head if inwards else foot)
+        below = foot if inwards else head
+    outer = body.circle(blank if rising[-1] == "upper" else core, recipe.height)
+    body.strip(below, outer)
     off = max(sheet.off for sheet in sheets.values())
     return _closed(design, body, (inner, outer), bore, (off, tolerance))
 
@@ -206,7 +189,7 @@ def _closed(
     body.face(outer, bore_high, up=True)
     if bore_low is not None and bore_high is not None:
         body.wall(bore_high, bore_low)
-    mesh = body.mesh(mirrored=recipe.rotation == "ccw")
+    mesh = body.mesh(mirrored=recipe.mirrored)
     off = flanks + body.moved
     precision.within("the flank", off, tolerance)
     rest = max(body.off + body.moved, bore_off)
@@ -220,10 +203,7 @@ def _crossed(body: _Body, design: DrumDesign) -> tuple[tuple[_Line, _Line], floa
     """
     recipe = design.recipe
     made = patches_of(design, body.tolerance)
-    edges = {
-        id(corner): body.add(points_of(corner.flanks[0], corner.at(made.r)[0], made.r))
-        for corner in corners_of(design.crossings)
-    }
+    edges = {id(corner): body.add(line_of(corner, made.r)) for corner in corners_of(design.crossings)}
     runs: tuple[list[Run], list[Run]] = ([], [])
     for patch in made.patches:
         inside = patch.theta[:, 1:-1]

@@ -9,6 +9,7 @@ import numpy as np
 
 from camgeo.capabilities.cylindrical.crossings import lost_of
 from camgeo.capabilities.cylindrical.figures import carried_from, outer_end
+from camgeo.common.units import UNIT_MM
 from camgeo.files.table import write_table
 from camgeo.measures.units import UNIT_NAMES
 
@@ -19,8 +20,8 @@ if TYPE_CHECKING:
     from camgeo.recipe.export import FileRequest
     from kin.numeric.arrays import Array
 
-STEP = math.radians(0.5)
-ORDER = 3
+STEP = math.radians(0.5)  # between rows, where a recipe does not ask for another
+ORDER = 3  # of the highest derivative of the motion
 PLACES = 3  # along a line of contact: its inner end, its middle, its outer end
 SLACK = 1e-9  # of a mm by which a place may lie within what is cut away
 
@@ -28,7 +29,7 @@ SLACK = 1e-9  # of a mm by which a place may lie within what is cut away
 def write_csv(design: DrumDesign, request: FileRequest, path: Path) -> None:
     """Write the table of a request; raises OSError where the file cannot be written."""
     units = request.unit_for(design.recipe.units)
-    mm = 25.4 if units == "inch" else 1.0
+    mm = UNIT_MM[units]
     period = design.recipe.period
     count = max(math.ceil(period / request.own.get("step", STEP) - 1e-9), 1)
     theta = np.arange(count) * (period / count)
@@ -56,21 +57,20 @@ def flank_table(design: DrumDesign, theta: Array, mm: float, unit: str) -> tuple
     undercut, or to a track that crosses, are empty.
     """
     recipe = design.recipe
-    sign = -1.0 if recipe.rotation == "ccw" else 1.0
     at = np.repeat(theta, PLACES)
     share = np.tile(np.linspace(0.0, 1.0, PLACES), theta.size)
     columns: dict[str, Array] = {"shaft_deg": np.degrees(at)}
     for name, flank in design.flanks.items():
         rho = recipe.roller.inner + share * (outer_end(design, name, at) - recipe.roller.inner)
         contact = flank.along(at, rho)
-        normal = flank.normal(contact, at) * np.array([1.0, sign, 1.0])
+        normal = flank.normal(contact, at) * np.array([1.0, recipe.sense, 1.0])
         there = rho >= carried_from(design, name, at) - SLACK
         for lost in lost_of(design.crossings, name):
             there &= ~lost.has(at, contact.r, recipe.period)
         own = {
             f"{name}_rho_{unit}": rho / mm,
             f"{name}_r_{unit}": contact.r / mm,
-            f"{name}_phi_deg": np.mod(np.degrees(sign * contact.phi), 360.0),
+            f"{name}_phi_deg": np.mod(np.degrees(recipe.sense * contact.phi), 360.0),
             f"{name}_z_{unit}": contact.z / mm,
             **{f"{name}_n{axis}": normal[:, k] for k, axis in enumerate("xyz")},
         }

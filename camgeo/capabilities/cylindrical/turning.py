@@ -9,15 +9,14 @@ import numpy as np
 
 from camgeo.capabilities.cylindrical.figures import carried_from, outer_end
 from camgeo.capabilities.cylindrical.guide import Arm
-from camgeo.capabilities.cylindrical.keys import Rib
 from camgeo.capabilities.cylindrical.shells import far, near, rims, shells
 from camgeo.curve.ring import Ring, bar, box, disc
 from camgeo.report.page.scene import CONTACTS, SHAFT, STEPS, FilledShape, MovingBody, Scene, pin, pivot, poses, still
 
 if TYPE_CHECKING:
     from camgeo.capabilities.cylindrical.design import DrumDesign
+    from camgeo.capabilities.cylindrical.drum_recipe import DrumRecipe, Roller
     from camgeo.capabilities.cylindrical.flank import Flank
-    from camgeo.capabilities.cylindrical.keys import DrumRecipe, Roller
     from camgeo.capabilities.cylindrical.shells import Shell
     from camgeo.report.page.scene import SceneInput
     from kin.numeric.arrays import Array
@@ -28,11 +27,6 @@ JOINT = 0.016  # of the drum's diameter and length together: size of a joint
 ARC = 12  # chords of an arc of contact
 
 
-def sense(design: DrumDesign) -> float:
-    """1 where the polar angle that faces the viewer rises with the shaft angle, else -1."""
-    return 1.0 if design.recipe.rotation == "cw" else -1.0
-
-
 def scene(design: DrumDesign, step: int = 0, of: list[Shell] | None = None) -> Scene:
     """The drum as it stands at a step of the turn, and its follower over the turn, in the recipe's unit.
 
@@ -41,7 +35,7 @@ def scene(design: DrumDesign, step: int = 0, of: list[Shell] | None = None) -> S
     recipe = design.recipe
     theta = np.linspace(0.0, recipe.period, STEPS + 1)
     size = JOINT * (2.0 * recipe.radius + recipe.height)
-    shapes = drum_shapes(design, of or shells(design), sense(design) * float(theta[step]))
+    shapes = drum_shapes(design, of or shells(design), design.recipe.sense * float(theta[step]))
     guide = recipe.guide
     follower = _arm(design, guide, theta, size) if isinstance(guide, Arm) else _carriage(design, theta, size)
     bodies = [MovingBody("drum", DRUM, tuple(shapes), still()), *follower]
@@ -80,7 +74,7 @@ def rollers(design: DrumDesign) -> list[Flank]:
 def seen_axis(design: DrumDesign, flank: Flank, theta: Array) -> tuple[Array, Array]:
     """Places to the right and up, mm (n,) each, of the axis of a flank's roller at shaft angles (n,)."""
     pose = flank.pose(theta)
-    return sense(design) * pose.y, pose.z
+    return design.recipe.sense * pose.y, pose.z
 
 
 def _roller(design: DrumDesign, x: float, y: float) -> FilledShape:
@@ -93,10 +87,8 @@ def _roller(design: DrumDesign, x: float, y: float) -> FilledShape:
 
 def outline(roller: Roller) -> Array:
     """Outline (n, 2) of a shoe about its pin, mm, along x."""
-    half, side = 0.5 * (roller.shoe or 0.0), roller.side
-    x = half * np.linspace(-1.0, 1.0, 2 * ARC + 1)
-    y = np.sqrt(np.maximum(side * side - x * x, 0.0)) - (side - roller.radius)
-    upper = np.column_stack([x, y])
+    x = 0.5 * (roller.shoe or 0.0) * np.linspace(-1.0, 1.0, 2 * ARC + 1)
+    upper = np.column_stack([x, roller.half_width(x)])
     return np.concatenate([upper[::-1], upper[1:-1] * (1.0, -1.0)])
 
 
@@ -104,17 +96,16 @@ def slope(design: DrumDesign, theta: Array) -> Array:
     """Slope of the track to the right of the viewer at shaft angles (n,), rad, in the middle of a shoe."""
     roller = design.recipe.roller
     middle = 0.5 * (roller.inner + roller.outer)
-    return np.asarray(sense(design) * np.arctan2(design.law.derivatives(theta, 1)[1], middle))
+    return np.asarray(design.recipe.sense * np.arctan2(design.law.derivatives(theta, 1)[1], middle))
 
 
 def _arm(design: DrumDesign, guide: Arm, theta: Array, size: float) -> list[MovingBody]:
     """Rollers on their arm, and its pivot; the arm's own x leads from the pivot to the roller."""
-    way = -sense(design) * guide.side
+    way = -design.recipe.sense * guide.side
     psi = guide.start + design.law.derivatives(theta, 0)[0]
-    x = sense(design) * guide.y
+    x = design.recipe.sense * guide.y
     pose = poses(x, guide.z, psi if way > 0.0 else math.pi - psi)
-    track = design.recipe.track
-    half = 0.5 * track.distance if isinstance(track, Rib) else 0.0
+    half = 0.5 * design.recipe.track.distance
     places = [(guide.length, way * side * half) for side in (-1.0, 1.0)] if half else [(guide.length, 0.0)]
     shape = [bar((0.0, 0.0), (guide.length, 0.0), 1.4 * size)]
     shape += [bar(places[0], places[-1], 1.4 * size)] if half else []
@@ -187,5 +178,5 @@ def _arc(design: DrumDesign, name: str, step: int) -> Ring:
     angle, reach = np.linspace(low, high, ARC + 1), np.linspace(near_end, far_end, ARC + 1)
     if not np.isfinite(low):
         angle, reach = np.zeros(2), np.full(2, near_end)
-    points = np.column_stack([-sense(design) * reach * np.sin(angle), reach * np.cos(angle)])
+    points = np.column_stack([-design.recipe.sense * reach * np.sin(angle), reach * np.cos(angle)])
     return Ring.through(points, closed=False)

@@ -14,9 +14,10 @@ from typing import TYPE_CHECKING, NamedTuple
 import numpy as np
 
 from camgeo.capabilities.cylindrical.bends import bends
-from camgeo.capabilities.cylindrical.grid import TURN, breaks_of
+from camgeo.capabilities.cylindrical.grid import breaks_of, parts_between
 from camgeo.curve.curve import CurveError
 from camgeo.measures.placed import greatest_of
+from kin.numeric.angles import TURN
 from kin.numeric.records import dataclass
 
 if TYPE_CHECKING:
@@ -26,11 +27,11 @@ if TYPE_CHECKING:
     from kin.numeric.arrays import Array
 
 SEEK = 2880  # shaft angles of a turn at which an undercut is sought
-DEPTHS = 33  # radii, of which
-HALVINGS = 50
-ZOOMS = 8
+DEPTHS = 33  # radii at which it is sought
+HALVINGS = 50  # of a step between two of these, or of an angle, at which it begins
+ZOOMS = 8  # onto a tip, each to a 24th of the angles before
 ALONG = 400  # places on either branch of a row near its crossing
-NEWTON = 12
+NEWTON = 12  # steps to where a row crosses itself
 STEP = 1e-6  # rad: of a difference quotient for Newton's method, which its result does not depend on
 CELLS, PARTS, ROUNDS, MOST_OPEN = 360, 4, 11, 100_000  # of the proof that a flank is regular
 
@@ -90,8 +91,7 @@ def tips(flank: Flank, low: float, high: float) -> list[Tip]:
 
     An undercut that reaches the blank has its tip there.
     """
-    knots = breaks_of(flank)
-    theta = np.unique(np.concatenate([np.linspace(knots[0], knots[-1], round(SEEK * flank.period / TURN) + 1), knots]))
+    theta = parts_between(breaks_of(flank), SEEK)
     reach = _reach(flank, theta, low, high)
     if not (reach > low).any():
         return []
@@ -161,8 +161,7 @@ def below(flank: Flank, low: float, high: float) -> tuple[float, float]:
 
 def demand_regular(flank: Flank, low: float, high: float) -> None:
     """Raise CurveError where it is not proved that a flank is regular from radius `low` to `high`, mm."""
-    knots = breaks_of(flank)
-    theta = np.unique(np.concatenate([np.linspace(knots[0], knots[-1], round(CELLS * flank.period / TURN) + 1), knots]))
+    theta = parts_between(breaks_of(flank), CELLS)
     edges = np.linspace(low, high, PARTS + 1)
     n = theta.size - 1
     a, b = np.tile(theta[:-1], PARTS), np.tile(theta[1:], PARTS)

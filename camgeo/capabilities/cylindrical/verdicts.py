@@ -5,8 +5,9 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, Any
 
 from camgeo.capabilities.cylindrical.development import developed
-from camgeo.capabilities.cylindrical.keys import DEVELOPMENT, FILES, End, Groove
+from camgeo.capabilities.cylindrical.keys import DEVELOPMENT, FILES
 from camgeo.capabilities.cylindrical.program import cutting_of
+from camgeo.common.units import UNIT_MM
 from camgeo.measures.units import in_units
 from camgeo.part.as_intent import holes_of
 from camgeo.part.body import Body
@@ -20,22 +21,14 @@ if TYPE_CHECKING:
     from pathlib import Path
 
     from camgeo.capabilities.cylindrical.design import DrumDesign
-    from camgeo.capabilities.cylindrical.keys import DrumRecipe
+    from camgeo.capabilities.cylindrical.drum_recipe import DrumRecipe
     from camgeo.recipe.export import FileRequest
     from kin.cylindrical.verdict import DrumVerdict, FlankVerdict
 
 
 def intended(design: DrumDesign, mm: float = 1.0) -> intent.DrumIntent:
     """The drum in kin's words; `mm` is the unit of a drawing."""
-    recipe, track = design.recipe, design.recipe.track
-    own: intent.Track
-    if isinstance(track, Groove):
-        own = intent.Groove(track.depth, track.clearance)
-    elif isinstance(track, End):
-        own = intent.End(track.facing, track.depth)
-    else:
-        own = intent.Rib(track.depth, track.distance)
-    roller = recipe.roller
+    recipe, roller = design.recipe, design.recipe.roller
     led: dict[str, Any] = recipe.guide.intended()
     if roller.taper:
         led |= {"taper": roller.taper, "at": roller.at}
@@ -44,12 +37,12 @@ def intended(design: DrumDesign, mm: float = 1.0) -> intent.DrumIntent:
     bore = None if design.bore is None else holes_of(Body(recipe.height, (design.bore,)))[0]
     return intent.DrumIntent(
         DrumFollower(roller.radius, roller.inner, roller.outer, recipe.level, design.law, turns=recipe.turns, **led),
-        own,
+        recipe.track.intended(),
         recipe.radius,
         recipe.height,
         bore,
         shortened=any(design.tips.values()),
-        mirrored=recipe.rotation == "ccw",
+        mirrored=recipe.mirrored,
         mm=mm,
     )
 
@@ -78,11 +71,11 @@ def judged_file(
 
         return verify_surfaces(path, intended(design), limits)
     if format_of(path).contents != "drawing":
-        own = 1.0 if request is None or request.unit_for("mm") == "mm" else 25.4
+        own = 1.0 if request is None else UNIT_MM[request.unit_for("mm")]
         return verify(path, intended(design), limits, None if stated else units or own)
     asked = [request] if request is not None else [each for each in recipe.export.files if each.as_ == DEVELOPMENT]
     asked = asked or list(requests([{"kind": "dxf"}], FILES))
-    mm = 25.4 if asked[0].unit_for(recipe.units) == "inch" else 1.0
+    mm = UNIT_MM[asked[0].unit_for(recipe.units)]
     lines = {line.layer: line for each in asked for line in developed(design, each, mm)}
     return verify_development(path, intended(design, mm), list(lines.values()), limits, None if stated else units or mm)
 

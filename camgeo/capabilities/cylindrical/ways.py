@@ -49,8 +49,8 @@ TAPERS = 2e-6  # rad: so are half angles, as no figure says that of a cone with 
 NEAR, ENDS = 0.05, 0.25  # of the tolerance: sizes of cones that are one, and a cutter's end that is on the floor
 SLOPES, RADII = 33, 25  # at which what a way leaves is looked at
 PARTS = 48  # of the roller's length, over each of which it is bounded how the contact turns
-HALVINGS = 30
-MOST_DEPTHS = 40
+HALVINGS = 30  # of the radius at which a cutter is set
+MOST_DEPTHS = 40  # that a smaller cutter may go in
 BELOW = 0.02  # mm that a depth goes below where the next begins
 
 
@@ -74,10 +74,13 @@ class Cutter(NamedTuple):
 
 @dataclass(frozen=True, eq=False)
 class Way:
-    """The way of a cutter along a flank, set on the cylinder, or at the distance rho, `at`, mm, its `end` at another.
+    """The way of a cutter along a flank.
 
-    `beside` says that it may stand beside the drum's axis, `near`, mm, by how much a cone may differ from a roller of
-    the same size.
+    at      distance from the drum's axis, mm, at which it leaves the flank as it is: on that cylinder with its axis
+            through the drum's, else that far along the roller
+    beside  whether its axis may stand beside the drum's
+    end     distance of its end from the drum's axis, mm
+    near    mm by which a cone may differ from its roller, and still counts as large as that
     """
 
     flank: Flank

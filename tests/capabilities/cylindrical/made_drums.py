@@ -20,7 +20,7 @@ if TYPE_CHECKING:
     from random import Random
 
     from camgeo.capabilities.cylindrical.design import DrumDesign
-    from camgeo.capabilities.cylindrical.keys import DrumRecipe
+    from camgeo.capabilities.cylindrical.drum_recipe import DrumRecipe
 
 
 def changed(text: str, *pairs: tuple[str, str]) -> str:

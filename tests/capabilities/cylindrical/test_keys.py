@@ -1,7 +1,7 @@
 """Faults of a cylindrical cam's recipe: each names its line, its field and a change that helps.
 
 Holds: camgeo.capabilities.cylindrical.reading, camgeo.capabilities.cylindrical.keys,
-camgeo.capabilities.cylindrical.refused.
+camgeo.capabilities.cylindrical.drum_recipe, camgeo.capabilities.cylindrical.soundness.
 """
 
 from __future__ import annotations

@@ -1,7 +1,7 @@
 # needs: made
 """Points measured on the flanks of a drum, by `camgeo verify`.
 
-Holds: camgeo.capabilities.cylindrical.made_points, kin.cylindrical.made, kin.cylindrical.inspected.
+Holds: camgeo.capabilities.cylindrical.made_points, kin.cylindrical.measured_flanks, kin.cylindrical.inspected.
 """
 
 from __future__ import annotations

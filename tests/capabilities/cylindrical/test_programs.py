@@ -43,8 +43,8 @@ import camgeo
 from camgeo.api.root import root_of
 from camgeo.capabilities.cylindrical.bends import contact_turns
 from camgeo.capabilities.cylindrical.design import DrumDesign
-from camgeo.capabilities.cylindrical.keys import Rib
 from camgeo.capabilities.cylindrical.making import make
+from camgeo.capabilities.cylindrical.tracks import Rib
 from camgeo.capabilities.cylindrical.verdicts import judged_file
 from camgeo.capabilities.cylindrical.ways import Cutter, Way, radially_off, set_beside, set_radially
 from camgeo.cli.main import main

@@ -16,8 +16,8 @@ from capabilities.cylindrical.positions import off_flank
 from support.heavy import manifold3d, trimesh
 
 from camgeo.capabilities.cylindrical.figures import volume
-from camgeo.capabilities.cylindrical.keys import Groove, Rib
 from camgeo.capabilities.cylindrical.solid import drum_mesh
+from camgeo.capabilities.cylindrical.tracks import Groove, Rib
 from camgeo.output.extension import numbers_of
 from camgeo.schema.errors import RecipeErrors
 

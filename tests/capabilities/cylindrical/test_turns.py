@@ -32,7 +32,7 @@ from camgeo.capabilities.cylindrical.crossings import meetings
 from camgeo.capabilities.cylindrical.exact import designed
 from camgeo.capabilities.cylindrical.figures import figures_of, volume
 from camgeo.capabilities.cylindrical.making import foresee
-from camgeo.capabilities.cylindrical.shoe import half_width, longest
+from camgeo.capabilities.cylindrical.shoe import longest
 from camgeo.capabilities.cylindrical.solid import drum_mesh
 from camgeo.capabilities.cylindrical.tables import flank_table
 from camgeo.common.clock import Clock
@@ -123,8 +123,8 @@ def test_the_play_of_a_shoe_in_a_crossing_is_what_its_arcs_leave() -> None:
     centre = (x1 * x1 + y1 * y1 - x0 * x0 - y0 * y0) / (2.0 * (y1 - y0))  # on the line x = 0
     size = abs(y0 - centre)
     across = centre + math.sqrt(size * size - 0.25 * gap * gap)
-    assert half_width(screw(), 0.5 * gap) == pytest.approx(across, abs=1e-12)
-    assert half_width(screw(), 0.5 * length) == pytest.approx(0.0, abs=1e-12)
+    halves = screw().recipe.roller.half_width(0.5 * np.array([gap, length]))
+    assert halves.tolist() == pytest.approx([across, 0.0], abs=1e-12)
     play = {figure.name: figure.value for figure in figures_of(screw())}["shoe-play"]
     assert play == pytest.approx(0.5 * width - across, abs=1e-12)
 

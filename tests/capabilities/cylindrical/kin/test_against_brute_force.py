@@ -1,7 +1,7 @@
 """Drums by chance, judged, against brute force that knows positions alone: the least distance from all axes of the
 roller, and the roller held by points on the file's triangles.
 
-Holds: kin.cylindrical.contact, kin.cylindrical.grid, kin.cylindrical.torn, kin.cylindrical.within.
+Holds: kin.cylindrical.contact, kin.cylindrical.grid, kin.cylindrical.torn_edges, kin.cylindrical.within.
 """
 
 from pathlib import Path

@@ -19,7 +19,7 @@ if TYPE_CHECKING:
     from kin.cylindrical.roller import Gauge, Worst
     from kin.numeric.arrays import Array, Indices, Mask
 
-PARTINGS = 24
+PARTINGS = 24  # of a triangle, at most
 MOST = 100_000  # triangles that may stay open
 FAR = 3.0  # times the tolerance: what is so far off need not be known more closely
 

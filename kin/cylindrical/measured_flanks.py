@@ -31,7 +31,7 @@ UNKNOWNS = "gzxyab"  # a turn about z, shifts along z, x and y, tilts about x an
 ROUNDS = 6  # of Gauss and Newton
 SETTLED = 1e-9  # mm
 ALIKE = 0.1  # of the roller's radius, within which nine of ten points of a drum lie
-MOST = 0.9
+MOST = 0.9  # of the points: so many have to lie so near
 BEYOND = 0.05  # of the depth of the flank, by which points may lie beyond it
 LOOKED = 400  # points of a wrong drum that are looked at
 TRIED = 360  # turns of a wrong drum that are tried
@@ -42,7 +42,7 @@ STANDS_OUT = 4.5  # standard deviations
 LEAST_OUT = 5e-4  # mm: less stands out of nothing
 NORMAL = 1.4826  # standard deviations in a median absolute deviation
 COVERAGE = 2.0  # standard deviations: about 95 % (GUM)
-STEPS = 720
+STEPS = 720  # of the turn, at which the motion is told
 
 
 class UnlikeError(CamgeoError, ValueError):

@@ -21,7 +21,7 @@ from typing import TYPE_CHECKING, NamedTuple
 import numpy as np
 
 from kin.cylindrical.lifts import widened
-from kin.cylindrical.roller import BESIDE, WITHIN, Course, Gauge, Held, Near, Place, Stand
+from kin.cylindrical.roller import BESIDE, WITHIN, Gauge, Held, Near, Place, Stand
 from kin.numeric.errors import UnsettledError
 from kin.numeric.records import dataclass
 
@@ -55,7 +55,8 @@ class _Over(NamedTuple):
 class LedGauge(Gauge):
     """A roller led by a guide, on a flank; it has its `radius` at the place `at` and grows by `growth` along its axis.
 
-    rim  radius of the blank, mm, which no contact is beyond
+    guide  what leads its axis
+    rim    radius of the blank, mm, which no contact is beyond
     """
 
     guide: Guide
@@ -90,11 +91,6 @@ class LedGauge(Gauge):
     def lever(self) -> float:
         """Travel of the roller's axis, mm, for one of the motion."""
         return self.guide.lever
-
-    @property
-    def course(self) -> Course:
-        """What leads the roller, and its radius along it."""
-        return Course(self.guide, self.radius - self.at * self.growth, self.growth)
 
     @cached_property
     def _upright(self) -> float:

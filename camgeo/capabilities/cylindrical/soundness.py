@@ -1,4 +1,4 @@
-"""Drums that are not made: undercut where it is refused or loses motion, and ends that stand within the flank."""
+"""Whether a drum can be made: undercut that is refused, motion that is lost, arms that swing far, ends in the flank."""
 
 from __future__ import annotations
 
@@ -9,7 +9,6 @@ import numpy as np
 
 from camgeo.capabilities.cylindrical.crossings import lost_of
 from camgeo.capabilities.cylindrical.guide import Arm
-from camgeo.capabilities.cylindrical.keys import End, Rib
 from camgeo.capabilities.cylindrical.patches import demand_smooth, kept_between
 from camgeo.capabilities.cylindrical.shoe import demand_led
 from camgeo.capabilities.cylindrical.undercut import CutError, tips
@@ -78,7 +77,7 @@ def _undercut(design: DrumDesign) -> Exception:
     )
     remedies = [_smaller(design)]
     if tip.r < recipe.radius - SHARP * recipe.radius:
-        if isinstance(recipe.track, End):
+        if not recipe.track.closed:
             remedies.append(f"let the roller begin at {upward(tip.r / mm + 0.5 / mm, 5)} {units}")
         else:
             remedies.append(
@@ -140,7 +139,7 @@ def _demand_near(design: DrumDesign) -> None:
                 problem = f"the arm swings to {max(ends):.6g} degrees off the plane across the drum's axis"
                 remedy = (
                     f"keep it within {MOST_SWING:g}: a smaller swing, or a pivot nearer to the middle of the stroke"
-                    + (", or a smaller distance" if isinstance(recipe.track, Rib) else "")
+                    + (", or a smaller distance" if recipe.track.distance else "")
                 )
                 raise design.error("cam.motion", problem, remedy)
         off, at = design.greatest(lambda theta, flank=flank: np.abs(flank.pose(theta).y))  # type: ignore[misc]
@@ -174,12 +173,12 @@ def _nearer(design: DrumDesign, low: float, high: float) -> str:
 
 def _demand_core(design: DrumDesign) -> None:
     """Raise RecipeErrors for an end cam whose core ends between the lowest and the highest place of its flank."""
-    recipe, track = design.recipe, design.recipe.track
-    if not isinstance(track, End):
+    recipe = design.recipe
+    if recipe.track.closed:
         return
-    (flank,) = design.flanks.values()
+    ((name, flank),) = design.flanks.items()
     least, most = (flank.resting(lift, recipe.floor) for lift in design.motion.range)
-    if track.facing == "top":
+    if name == "lower":
         end, field = recipe.height, "part.length"
         problem = "the drum ends between the lowest and the highest place of its flank"
     else:
@@ -187,7 +186,7 @@ def _demand_core(design: DrumDesign) -> None:
         problem = "the lower face lies between the lowest and the highest place of the flank"
     if least < end < most:
         mm, units = recipe.mm, recipe.units
-        if track.facing == "top":
+        if name == "lower":
             remedy = f"give more than {most / mm:.6g} {units}, or less than {least / mm:.6g} {units}"
         elif recipe.swings:
             remedy = f"raise it and the arm's pivot by more than {-least / mm:.6g} {units}"
