@@ -407,6 +407,24 @@ def test_planted_faults_are_refused(sound: tuple[str, DrumDesign, Path], fault: 
     assert name in {each for each, _ in refused(judged(path, design, FINE))}
 
 
+def test_a_solid_whose_faces_enclose_nothing_is_not_read(sound: tuple[str, DrumDesign, Path]) -> None:
+    """All of its points are mirrored, and its faces and bounds are not."""
+    text, design, folder = sound
+
+    def mirror(found: re.Match[str]) -> str:
+        x, y, z = found[2].split(",")
+        return f"{found[1]}({x},{-float(y)!r},{z})"
+
+    path = folder / "mirrored.step"
+    points = re.sub(r"(CARTESIAN_POINT\('',)\(([^(),]*,[^(),]*,[^(),]*)\)", mirror, text)
+    assert points != text
+    path.write_text(points, encoding="latin-1")
+    found = judged(path, design, FINE)
+    assert not found.ok
+    (check,) = found.checks
+    assert (check.name, "its bounds do not enclose" in check.detail) == ("readable", True)
+
+
 def test_a_drum_for_another_roller_is_refused(sound: tuple[str, DrumDesign, Path]) -> None:
     text, design, folder = sound
     path = folder / "drum.step"
