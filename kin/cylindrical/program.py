@@ -435,7 +435,8 @@ def _cleared(passes: Sequence[Pass], drum: DrumIntent, cutter: float) -> Check:
     if ways:
         ends = np.array([end for way in ways for end in (way.a.min(), way.a.max())])
         # a way may begin or end between the points of all others
-        angles = np.unique(np.mod(np.concatenate([*(way.a for way in ways), ends - 2.0 * JOINT, ends + 2.0 * JOINT]), period))
+        angles = np.concatenate([*(way.a for way in ways), ends - 2.0 * JOINT, ends + 2.0 * JOINT])
+        angles = np.unique(np.mod(angles, period))
         rows = np.array([row for way in ways for row in _met(way, angles, period)])
         order = np.argsort(rows[:, 0], axis=0)  # places that a way does not have come last
         apart = np.hypot(*(np.diff(np.take_along_axis(rows[:, k], order, axis=0), axis=0) for k in (0, 1)))
