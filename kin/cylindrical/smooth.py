@@ -517,9 +517,13 @@ class _Falls(NamedTuple):
             row[which] = values
             return row
 
-        *rows, (low, high) = self
-        *others, path = other
-        return _Falls(*(put(a, b) for a, b in zip(rows, others, strict=True)), (put(low, path[0]), put(high, path[1])))
+        return _Falls(
+            put(self.fall, other.fall),
+            put(self.nearing, other.nearing),
+            put(self.slope, other.slope),
+            put(self.turns, other.turns),
+            (put(self.path[0], other.path[0]), put(self.path[1], other.path[1])),
+        )
 
 
 def _falls(gauge: Gauge, places: _Places, angles: tuple[Array, Array], window: Array, shift: float) -> _Falls:
