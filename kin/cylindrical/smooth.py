@@ -281,8 +281,8 @@ class _Look:
                 | (bare > max(self.most["bare"], 0.0) + self.near)
                 | (low < self.lowest - self.near)
             )
-            last = far or parting == ROUNDS or np.count_nonzero(open_) > MOST
-            last |= bool((open_ & _hopeless(cells, bounds, (self.near, self.shift))).any())
+            hopeless = bool((open_ & _hopeless(cells, bounds, (self.near, self.shift))).any())
+            last = far or parting == ROUNDS or np.count_nonzero(open_) > MOST or hopeless
             done = np.ones_like(open_) if last else ~open_
             for name, values in (("out", out), ("proud", proud), ("bare", bare)):
                 self.bound[name] = max(self.bound[name], float(values[done].max(initial=-math.inf)))
