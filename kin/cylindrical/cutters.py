@@ -271,7 +271,7 @@ class _Others:
     def near(self, one: Pass, turn: float, columns: slice, cutter: _Cutter) -> list[slice]:
         """Stretches of angles, within some, at which a pass on another turn may come to points."""
         theta = self.points.theta[0, columns] + turn
-        edges = np.arange(np.floor(one.a[0] * BINS / TURN), np.ceil(one.a[-1] * BINS / TURN) + 1.0) * (TURN / BINS)
+        edges = np.arange(np.floor(one.a[0] * BINS / TURN), np.floor(one.a[-1] * BINS / TURN) + 2.0) * (TURN / BINS)
         at = np.interp(edges, one.a, one.x)
         low, high = np.minimum(at[:-1], at[1:]), np.maximum(at[:-1], at[1:])
         place = np.clip(np.searchsorted(edges, one.a, side="right") - 1, 0, len(low) - 1)

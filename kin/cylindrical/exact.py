@@ -77,10 +77,10 @@ def verify_surfaces(path: Path, drum: DrumIntent, limits: Limits) -> DrumVerdict
     if kind.shell is None:
         raise ValueError(f"{path.name} holds no exact surfaces")
     try:
-        read = kind.shell(path)
+        # faces that cannot be told from what they enclose show when they are looked at
+        verdict = judge_shell(kind.shell(path), drum, limits, kind.name)
     except ReadError as error:
         return DrumVerdict(kind.name, (about(unread_check("solid", error), path.name),))
-    verdict = judge_shell(read, drum, limits, kind.name)
     return replace(verdict, checks=tuple(about(check, path.name) for check in verdict.checks))
 
 

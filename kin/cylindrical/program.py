@@ -11,7 +11,6 @@ from __future__ import annotations
 
 import math
 import re
-from itertools import pairwise
 from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
@@ -39,9 +38,10 @@ if TYPE_CHECKING:
     from kin.cylindrical.lifts import Lifts
     from kin.cylindrical.roller import Gauge
     from kin.cylindrical.turned import Pass, TurnedProgram
-    from kin.numeric.arrays import Array, Indices
+    from kin.numeric.arrays import Array, Indices, Mask
 
 SAME = 1e-9  # mm: sizes that differ by less are one
+JOINT = 1e-9  # rad: angles that differ by less are one
 LEAN = 1e-2  # by which the slope of a flank may be more between two angles
 FEED = 0.01  # of a feed, by which it may differ
 COARSE, FAR = 20.0, 3.0  # times the tolerance: what a first look is good for, and what is refused at it
@@ -390,39 +390,82 @@ def _depth(program: TurnedProgram, passes: Sequence[Pass], drum: DrumIntent, cut
         ends = f"from line {deepest.line} on the cutter ends at a radius of {length_words(deepest.end.z)} {UNIT}"
         why = f"{ends}, the floor has {length_words(drum.floor)} {UNIT}"
         return failed("depth", why, unit="mm", limit=cutting.depth_of_cut)
-    worst, line = 0.0, passes[0].line
-    for k, one in enumerate(passes):
-        before = min([drum.radius, *(other.z for other in passes[:k] if _beside(one, other) <= cutting.radius)])
-        if before - one.z > worst:
-            worst, line = before - one.z, one.line
+    period, worst, line = gauges_of(drum)[0].lifts.period, 0.0, passes[0].line
+    ways: list[Pass] = []
+    deep: list[float] = []  # how far down each has been gone
+    near: dict[tuple[int, int], Mask] = {}
+    for one in passes:
+        own = next((k for k, way in enumerate(ways) if one.same_way(way)), len(ways))
+        if own == len(ways):
+            ways.append(one)
+            deep.append(drum.radius)
+            angles = _between(one, passes, period)
+            near |= {(own, k): _near(one, way, angles, period, cutting.radius) for k, way in enumerate(ways)}
+            near |= {
+                (k, own): _near(way, one, _between(way, passes, period), period, cutting.radius)
+                for k, way in enumerate(ways[:own])
+            }
+        before = np.min([np.where(near[own, k], z, drum.radius) for k, z in enumerate(deep)], axis=0)
+        if float(before.max()) - one.z > worst:
+            worst, line = float(before.max()) - one.z, one.line
+        deep[own] = min(deep[own], one.z)
     slack = limits.tolerance
     return at_most("depth", worst, cutting.depth_of_cut, "mm", detail=f"the pass from line {line}", slack=slack)
 
 
 def _cleared(passes: Sequence[Pass], drum: DrumIntent, cutter: float) -> Check:
     """Check that passes at the floor lie so near to one another that nothing stands between."""
-    low = min(one.z for one in passes)
-    ways = [one for one in passes if one.z <= low + END]
-    gauge = gauges_of(drum)[0]
-    ways.sort(key=lambda one: float(np.mean(one.x - gauge.axis(one.a))))
-    worst = max((_beside(one, other) for one, other in pairwise(ways)), default=0.0)
+    low, period = min(one.z for one in passes), gauges_of(drum)[0].lifts.period
+    ways: list[Pass] = []
+    for one in passes:
+        if one.z <= low + END and float(np.ptp(one.a)) and not any(one.same_way(way) for way in ways):
+            ways.append(one)
+    worst = 0.0
+    if ways:
+        ends = np.array([end for way in ways for end in (way.a.min(), way.a.max())])
+        # a way may begin or end between the points of all others
+        angles = np.concatenate([*(way.a for way in ways), ends - 2.0 * JOINT, ends + 2.0 * JOINT])
+        angles = np.unique(np.mod(angles, period))
+        rows = np.array([row for way in ways for row in _met(way, angles, period)])
+        order = np.argsort(rows[:, 0], axis=0)  # places that a way does not have come last
+        apart = np.hypot(*(np.diff(np.take_along_axis(rows[:, k], order, axis=0), axis=0) for k in (0, 1)))
+        worst = float(apart[np.isfinite(apart)].max(initial=0.0))
     detail = "between the centres of neighbouring passes, against the cutter's diameter"
     return at_most("cleared", worst, 2.0 * cutter, "mm", detail=detail)
 
 
-def _beside(one: Pass, other: Pass) -> float:
-    """Greatest distance of two ways at one angle, mm, at angles that both have."""
+def _met(way: Pass, angles: Array, period: float) -> list[tuple[Array, Array]]:
+    """Places (n,), (n,) of a way at angles, rad, in each period in which it meets any of them; nan at the others."""
+    low, high = float(way.a.min()), float(way.a.max())
+    first, last = math.floor((low - angles.max()) / period), math.ceil((high - angles.min()) / period)
+    found = [_places(way, angles + turn * period) for turn in range(first, last + 1)]
+    return [places for places in found if np.isfinite(places[0]).any()]
 
-    def at(way: Pass, values: Array, angles: Array) -> Array:
-        order = slice(None) if way.a[-1] >= way.a[0] else slice(None, None, -1)
-        return np.interp(angles, way.a[order], values[order])
 
-    angles = np.concatenate([one.a, other.a])
-    low, high = max(one.a.min(), other.a.min()), min(one.a.max(), other.a.max())
-    angles = angles[(angles >= low) & (angles <= high)]
-    if not len(angles):
-        return math.inf
-    apart = np.hypot(
-        at(one, one.x, angles) - at(other, other.x, angles), at(one, one.y, angles) - at(other, other.y, angles)
-    )
-    return float(apart.max())
+def _places(way: Pass, angles: Array) -> tuple[Array, Array]:
+    """Places (n,), (n,) of a way along the drum and beside its axis, mm, at angles, rad; nan beyond its ends."""
+    order = slice(None) if way.a[-1] >= way.a[0] else slice(None, None, -1)
+    a = way.a[order]
+    beyond = (angles < a[0] - JOINT) | (angles > a[-1] + JOINT)
+    x, y = (np.where(beyond, np.nan, np.interp(angles, a, row[order])) for row in (way.x, way.y))
+    return x, y
+
+
+def _between(one: Pass, passes: Sequence[Pass], period: float) -> Array:
+    """Angles of a way between its points and the ends of all passes, or the one at which it stands."""
+    low, high = float(one.a.min()), float(one.a.max())
+    if low == high:
+        return np.array([low])
+    ends = np.unique([end for each in passes for end in (each.a.min(), each.a.max())])
+    turns = np.arange(math.floor((low - ends[-1]) / period), math.ceil((high - ends[0]) / period) + 1)
+    ends = (ends + turns[:, None] * period).ravel()
+    joints = np.unique(np.concatenate([one.a, ends[(ends > low) & (ends < high)]]))
+    return np.asarray(0.5 * (joints[1:] + joints[:-1]))
+
+
+def _near(one: Pass, other: Pass, angles: Array, period: float, radius: float) -> Mask:
+    """Whether another way goes by no farther off than `radius`, mm, at angles (n,) of one, rad."""
+    (x, y), near = _places(one, angles), np.zeros(len(angles), dtype=np.bool_)
+    for other_x, other_y in _met(other, angles, period):
+        near |= np.hypot(other_x - x, other_y - y) <= radius
+    return near

@@ -59,9 +59,11 @@ ROUNDS, MOST = 12, 400_000  # of halving cells, and cells at a time
 FAR = 3.0  # times the tolerance: what is so far off need not be known more closely
 BINS = 2048  # parts of a turn, for each of which the roller is held
 WINDOW, ROOM, MOST_WINDOW = 0.004, 1.5, 0.1  # rad, about the worst angle, within which F falls; one with room; greatest
+NOTHING = 0.01  # of what bounds have to be close to: cells whose own bounds are below it need not be smaller
+NARROWER = 3  # times that the window is a quarter, where F is not known to fall all over it
 LOOKS, DEPTHS, PARTINGS = 720, 8, 4  # cells of the proof that a flank is regular, and how often they are halved
 JUMP = 1e-9  # of the greatest jump of S'', mm per rad^2, below which one is rounding
-SHIFT = 2.0  # times what is seen, and half the tolerance: ways that a roller may give, for which bounds are true
+SHIFT = 2.0  # times what is seen, and what bounds may be above it: ways that a roller may give, for which all is true
 LOST = 0.05  # of the radius, by the radian: where F is steeper no peak is near
 NEARER = 2e-4  # of a radius, by which chords of the control points of a cell lie nearer to the axis
 LOOSE = 1e-7  # rad, by which two faces may miss one another
@@ -235,7 +237,7 @@ class _Look:
         gauge.demand_bounded()
         if not all(bool((np.isfinite(each.height) & np.isfinite(each.gives)).all()) for each in cells):
             raise UnsettledError("a part of the surface is nowhere near the flank")
-        self.shift = SHIFT * max(float(np.abs(each.gives).max()) for each in cells) + 0.5 * self.tolerance
+        self.shift = SHIFT * (max(float(np.abs(each.gives).max()) for each in cells) + self.near)
         far = max(float(np.abs(each.distance).max()) for each in cells) > FAR * self.tolerance
         if not far:
             # between control points a surface may lie a little nearer to the axis
@@ -279,13 +281,14 @@ class _Look:
                 | (bare > max(self.most["bare"], 0.0) + self.near)
                 | (low < self.lowest - self.near)
             )
-            last = far or parting == ROUNDS or np.count_nonzero(open_) > MOST
+            hopeless = bool((open_ & _hopeless(cells, bounds, (self.near, self.shift))).any())
+            last = far or parting == ROUNDS or np.count_nonzero(open_) > MOST or hopeless
             done = np.ones_like(open_) if last else ~open_
             for name, values in (("out", out), ("proud", proud), ("bare", bare)):
                 self.bound[name] = max(self.bound[name], float(values[done].max(initial=-math.inf)))
             self._hold(cells, bounds, done)
             if last and open_.any() and not far:
-                raise UnsettledError("bounds of the flank's surface do not come close to what is reached")
+                raise UnsettledError("bounds of the flank's surface do not come close to what is reached: give an STL")
             if done.all():
                 return
             cells = self._halved(cells.take(open_), bounds.skew[:, open_])
@@ -328,6 +331,18 @@ class _Look:
         return _measured(self.gauge, np.ascontiguousarray(np.concatenate(parts)), np.concatenate(lines))
 
 
+def _hopeless(cells: _Cells, bounds: _Bounds, sizes: tuple[float, float]) -> Mask:
+    """Cells (n,) so small that not they, but how far rollers are shifted, leaves F unknown.
+
+    `sizes` are what bounds have to be close to, and how far rollers are shifted, mm.
+    """
+    near, shift = sizes
+    span = (cells.theta.max(axis=(1, 2)) - cells.theta.min(axis=(1, 2))) * bounds.along[1]
+    small = (span < shift) & (bounds.height + bounds.distance < NOTHING * near)
+    hopeless: Mask = small & ~np.isfinite(bounds.gap)
+    return hopeless
+
+
 # --- bounds over cells ------------------------------------------------------------------------------------------------
 
 
@@ -339,6 +354,9 @@ class _Places(NamedTuple):
     along: Ball
     v: Ball
     size: Ball
+
+    def take(self, which: Indices) -> _Places:
+        return _Places(*(Ball(ball.mid[which], ball.rad[which]) for ball in self))
 
 
 def _bounds(gauge: Gauge, cells: _Cells, shift: float) -> _Bounds:
@@ -448,17 +466,27 @@ def _gaps(
     seen = np.abs(cells.height).max(axis=(1, 2))
     top = np.maximum(cells.height.max(axis=(1, 2)), 0.0)
     with np.errstate(divide="ignore", invalid="ignore"):
-        found = _falls(gauge, places, angles, np.full_like(top, WINDOW), shift)
+        near = np.full_like(top, WINDOW)
+        found = _falls(gauge, places, angles, near, shift)
+        peaked = found.peaks(steep, shift, near)
+        # where the roller is all but beside a place F is known close to its peak alone
+        for _ in range(NARROWER):
+            lost = np.flatnonzero(~peaked)
+            if not len(lost):
+                break
+            near[lost] *= 0.25
+            own = (angles[0][lost], angles[1][lost])
+            found = found.replaced(lost, _falls(gauge, places.take(lost), own, near[lost], shift))
+            peaked = found.peaks(steep, shift, near)
         fall, (least, most) = found.fall, found.path
-        peaked = (fall > 0.0) & (steep + shift * found.turns <= fall * WINDOW)
         beside = np.where(peaked, steep**2 / (2.0 * fall), np.inf)
         # where F is above 0 the roller may stand nearer: within a window at whose ends F is below 0
         top = np.where(np.isfinite(beside), top + beside, 0.0)
-        window = np.where(fall > 0.0, 2.0 * WINDOW + ROOM * np.sqrt(2.0 * top / np.maximum(fall, 1e-6)), WINDOW)
+        window = np.where(fall > 0.0, 2.0 * near + ROOM * np.sqrt(2.0 * top / np.maximum(fall, 1e-6)), near)
         window = np.minimum(window, MOST_WINDOW)
         found = _falls(gauge, places, angles, window, 0.0)
         fall, nearing = found.fall, found.nearing
-        within = np.isfinite(beside) & (fall > 0.0) & (top < 0.5 * fall * (window - WINDOW) ** 2) & (nearing > 0.0)
+        within = np.isfinite(beside) & (fall > 0.0) & (top < 0.5 * fall * (window - near) ** 2) & (nearing > 0.0)
         rate = places.size.magnitude * steep + seen * found.slope
         # P is less by no more than rate^2/(2 nearing), and with it R^2/2 by what R grows; both are above 9/10 of R
         gap = rate**2 / (2.0 * nearing) + top * growth * places.y.magnitude * window
@@ -475,6 +503,27 @@ class _Falls(NamedTuple):
     slope: Array
     turns: Array
     path: tuple[Array, Array]
+
+    def peaks(self, steep: Array, shift: float, window: Array) -> Mask:
+        """Whether F of all rollers has its peak within the window (n,), rad, about where its slope is `steep` (n,)."""
+        peaked: Mask = (self.fall > 0.0) & (steep + shift * self.turns <= self.fall * window)
+        return peaked
+
+    def replaced(self, which: Indices, other: _Falls) -> _Falls:
+        """Bounds with those of some cells taken from others."""
+
+        def put(own: Array, values: Array) -> Array:
+            row = own.copy()
+            row[which] = values
+            return row
+
+        return _Falls(
+            put(self.fall, other.fall),
+            put(self.nearing, other.nearing),
+            put(self.slope, other.slope),
+            put(self.turns, other.turns),
+            (put(self.path[0], other.path[0]), put(self.path[1], other.path[1])),
+        )
 
 
 def _falls(gauge: Gauge, places: _Places, angles: tuple[Array, Array], window: Array, shift: float) -> _Falls:

@@ -139,7 +139,10 @@ class Pass:
 
 
 def passes_of(moves: tuple[TurnMove, ...], blank: float) -> Iterator[Pass]:
-    """Passes of the moves that cut below the blank's radius, mm; those that only go down or up make none."""
+    """Passes of the moves that cut below the blank's radius, mm.
+
+    A cutter that goes down and does not cut on from there makes one of a single place, twice.
+    """
     open_: list[TurnMove] = []
 
     def made() -> Iterator[Pass]:
@@ -148,10 +151,27 @@ def passes_of(moves: tuple[TurnMove, ...], blank: float) -> Iterator[Pass]:
             yield Pass(open_[0].line, open_[0].start.z, points[:, 3], points[:, 0], points[:, 1])
             open_.clear()
 
+    down: TurnMove | None = None
     for move in moves:
         level = move.start.z == move.end.z
-        if not move.rapid and level and move.start.z < blank and move.start != move.end:
-            open_.append(move)
-        else:
-            yield from made()
+        if not move.rapid and level and move.start.z < blank:
+            if move.start != move.end:
+                open_.append(move)
+                down = None
+            continue
+        yield from made()
+        deeper = move.end.z < min(move.start.z, blank)
+        if down is not None and not (deeper and move.end._replace(z=0.0) == down.end._replace(z=0.0)):
+            yield _still(down)
+            down = None
+        if deeper:
+            down = move
     yield from made()
+    if down is not None:
+        yield _still(down)
+
+
+def _still(down: TurnMove) -> Pass:
+    """The pass of a cutter that only goes down."""
+    x, y, z, a = down.end
+    return Pass(down.line, z, np.array([a, a]), np.array([x, x]), np.array([y, y]))

@@ -407,6 +407,50 @@ def test_planted_faults_are_refused(sound: tuple[str, DrumDesign, Path], fault: 
     assert name in {each for each, _ in refused(judged(path, design, FINE))}
 
 
+STEEP = """
+cam:
+  kind: cylindrical
+  radius: 70
+  track: {rib: {distance: 42, depth: 14}}
+  follower: {radius: 11, arm: {length: 110, offset: 108.5, pivot: 60}}
+  pitch_height: 43
+  motion:
+    - {rise: 18, over: 110, law: modified-sine}
+    - {dwell: 70}
+    - {return: 18, over: 130, law: cycloidal}
+    - {dwell: 50}
+part: {length: 110, bore: 32}
+export: {tolerance: 1, files: [step]}
+"""
+
+
+def test_a_coarse_solid_of_a_rib_on_an_arm_is_told(tmp_path: Path) -> None:
+    """Its rollers stand so aslant that those shifted by half of the tolerance touch it otherwise."""
+    pytest.importorskip("OCP")
+    path, design, _ = written(tmp_path, STEEP, 1.0)
+    verdict = judged(path, design, 1.0)
+    assert verdict.ok, verdict.checks
+    assert all(0.01 < flank.measured_error < 0.2 for flank in verdict.flanks)
+
+
+def test_a_solid_whose_faces_enclose_nothing_is_not_read(sound: tuple[str, DrumDesign, Path]) -> None:
+    """All of its points are mirrored, and its faces and bounds are not."""
+    text, design, folder = sound
+
+    def mirror(found: re.Match[str]) -> str:
+        x, y, z = found[2].split(",")
+        return f"{found[1]}({x},{-float(y)!r},{z})"
+
+    path = folder / "mirrored.step"
+    points = re.sub(r"(CARTESIAN_POINT\('',)\(([^(),]*,[^(),]*,[^(),]*)\)", mirror, text)
+    assert points != text
+    path.write_text(points, encoding="latin-1")
+    found = judged(path, design, FINE)
+    assert not found.ok
+    (check,) = found.checks
+    assert (check.name, "its bounds do not enclose" in check.detail) == ("readable", True)
+
+
 def test_a_drum_for_another_roller_is_refused(sound: tuple[str, DrumDesign, Path]) -> None:
     text, design, folder = sound
     path = folder / "drum.step"

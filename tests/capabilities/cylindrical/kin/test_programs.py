@@ -294,6 +294,18 @@ def without(text, number):
     return "\n".join(lines[:number] + lines[number + 1 :])
 
 
+def drilled(text, degrees, beside=0.0):
+    """A program that at the end goes down to the floor once more at an angle, so far beside the roller's axis."""
+    x = 20.0 + float(DRUM.motion(np.radians(degrees))) + beside
+    return text.replace("M5\n", f"G0 X{x:.5f} A{degrees}\nG1 Z37.5 F10\nG0 Z60\nM5\n")
+
+
+def pieces_of(text, number):
+    """A program whose first pass ends at a line, all of the others whole."""
+    lines = text.split("\n")
+    return "\n".join(lines[:number] + lines[lines.index("G0 Z60", 6) :])
+
+
 FAULTS = {
     "a block left out": (lambda text: without(text, 8 + 733 + 50), {"contour", "feed"}),
     "X shifted by 0.01": (lambda _: text_of(way()[0], way()[1] + 0.01), {"contour", "motion"}),
@@ -311,6 +323,8 @@ FAULTS = {
     "less than a turn": (lambda _: text_of(*way(over=355.0)), {"contour"}),
     "fast in the metal": (lambda text: text.replace("G0 Z60\nM5", "G0 X25\nG0 Z60\nM5"), {"rapid"}),
     "into the wall": (lambda text: text.replace("G0 Z60\nM5", "G1 X70 F5\nG0 Z60\nM5"), {"ways"}),
+    "drilled beside the path": (lambda text: drilled(text, 200.0, 0.5), {"contour"}),
+    "a piece of the first depth alone": (lambda text: pieces_of(text, 8 + 40), {"depth"}),
     "down while it turns": (lambda text: text.replace("G1 Z44.0", "G1 Z44.0 A0.5"), {"ways"}),
     "to and fro": (
         lambda _: text_of(np.concatenate([way()[0][:5], way()[0][3:]]), np.concatenate([way()[1][:5], way()[1][3:]])),
@@ -347,6 +361,35 @@ def test_a_rest_in_one_long_block(tmp_path):
     for first, second in zip(*(verdict.flanks for verdict in found), strict=True):
         assert second.motion.max == pytest.approx(first.motion.max, abs=1e-6)
         assert second.motion.rms == pytest.approx(first.motion.rms, abs=1e-5)
+
+
+@pytest.mark.parametrize("degrees", [0.0, 90.0, 200.0])
+def test_a_hole_on_the_path_is_nothing_s_fault(tmp_path, degrees):
+    whole, holed = (judged(tmp_path, text) for text in (text_of(*way()), drilled(text_of(*way()), degrees)))
+    assert holed.ok, holed.checks
+    for flank, other in zip(whole.flanks, holed.flanks, strict=True):
+        assert other.motion.max == pytest.approx(flank.motion.max, abs=1e-5)
+
+
+def test_a_hole_that_goes_down_in_two_steps_is_one(tmp_path):
+    """A cutter that goes on from where it stands makes no pass there; one that leaves does."""
+    text = "G21\nG17 G90 G94\nG0 Z60\nG0 X1 A0\nS9 M3\nG1 Z45 F9\nG1 Z40\n{}G0 Z60\nM5\nM30\n"
+    path = tmp_path / "hole.ngc"
+    for more, points in (("", 2), ("G1 A9\nG1 A12\n", 3)):
+        path.write_text(text.format(more), "ascii")
+        (one,) = passes_of(read_turned(path).moves, 50.0)
+        assert (one.z, len(one.a), one.line) == (40.0, points, 8 if more else 7)
+
+
+def test_what_stands_between_two_ways_is_found_behind_a_piece_of_a_third(tmp_path):
+    a, x = way(level=0.0, step=2.0)
+    some = slice(20, 60)
+    parts = [(a, x + 14.5), (a[some], x[some] + 20.0), (a, x + 25.5)]
+    text = "".join(text_of(*each).split("M5")[0] for each in parts).replace("(cutter: diameter 20)", "")
+    verdict = judged(tmp_path, text + "M5\nM30\n", cutting=replace(CUTTING, radius=4.5), tolerance=1.0)
+    (check,) = [each for each in verdict.checks if each.name == "cleared"]
+    assert not check.ok
+    assert check.value == pytest.approx(11.0)
 
 
 def test_what_stands_between_two_ways_is_found(tmp_path):
