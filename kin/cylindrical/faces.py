@@ -243,11 +243,11 @@ def _inside(body: Body, drum: DrumIntent, name: str, corners: Indices) -> Array:
     radius = drum.radius if name == BLANK else drum.floor
     flat = body.points[corners][..., :2]
     ends = [(flat[:, k], flat[:, k - 1]) for k in range(3)]
-    sag: Array = np.maximum(radius - np.minimum.reduce([_least_radius(*each) for each in ends]), 0.0)
+    sag: Array = np.maximum(radius - np.minimum.reduce([least_radius(*each) for each in ends]), 0.0)
     return sag
 
 
-def _least_radius(start: Array, last: Array) -> Array:
+def least_radius(start: Array, last: Array) -> Array:
     """Least distance (n,) from the axis of lines from one to another place (n, 2), mm."""
     way = last - start
     square = np.einsum("nk,nk->n", way, way)
@@ -334,7 +334,7 @@ def _farthest(body: Body, drum: DrumIntent, what: tuple[str, float], own: Mask, 
     if name == BORE and drum.bore is not None:
         return max(worst, _off_outline(drum.bore, start, last, FINE * tolerance))
     radius = drum.radius if name == BLANK else drum.floor
-    return max(worst, radius - float(_least_radius(start, last).min()))
+    return max(worst, radius - float(least_radius(start, last).min()))
 
 
 def _off_outline(bore: Hole, start: Array, last: Array, fine: float) -> float:
