@@ -8,6 +8,7 @@ camgeo.capabilities.cylindrical.followed_recipe, kin.cylindrical.running, kin.cy
 from __future__ import annotations
 
 import json
+from itertools import pairwise
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -99,7 +100,7 @@ def test_level_faces_of_another_kernel_have_triangles_along_the_rim(tmp_path: Pa
         roller.rotate([0, 0, angle]).translate([0, 0, 20.0 + lift])
         for angle, lift in zip(np.degrees(theta).tolist(), LIFT(theta).tolist(), strict=True)
     ]
-    way = [manifold3d.Manifold.batch_hull(list(pair)) for pair in zip(ways, ways[1:], strict=False)]
+    way = [manifold3d.Manifold.batch_hull(list(pair)) for pair in pairwise(ways)]
     blank, core = (manifold3d.Manifold.cylinder(length, r, r, 180) for length, r in ((80.0, 50.0), (90.0, 12.0)))
     taken = manifold3d.Manifold.batch_boolean([core.translate([0, 0, -5]), *way], manifold3d.OpType.Add)
     solid = (blank - taken).to_mesh()
