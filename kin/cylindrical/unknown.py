@@ -111,7 +111,7 @@ class Drum:
 
     @cached_property
     def least(self) -> Array:
-        """Least distances (t,) of facets from the axis, mm, seen along it; a level one may have all corners on the rim."""
+        """Least distances (t,) of facets from the axis, mm, seen along it; all corners may lie on the rim."""
         corners = list(np.moveaxis(self.facets[..., :2], 1, 0))
         sides = [(corners[k - 1], corners[k]) for k in range(3)]
         turned = np.stack([start[:, 0] * last[:, 1] - start[:, 1] * last[:, 0] for start, last in sides])
