@@ -70,11 +70,17 @@ class Body:
         return np.arctan2(self.points[:, 1], self.points[:, 0]) if self.laid is None else self.laid
 
     @cached_property
-    def wide(self) -> Mask:
-        """Triangles (t,) whose corners are far apart round the axis."""
-        first, *others = self.each(self.phi)
-        turn = np.maximum.reduce([np.abs(np.remainder(one - first + np.pi, TURN) - np.pi) for one in others])
-        return np.asarray(turn > BESIDE)
+    def beyond(self) -> Array:
+        """By how much farther than BESIDE the corners of triangles (t,) are apart round the axis, rad."""
+        a, b, c = self.each(self.phi)
+        apart = [np.abs(np.remainder(one - other + np.pi, TURN) - np.pi) for one, other in ((a, b), (b, c), (c, a))]
+        beyond: Array = np.maximum(np.maximum.reduce(apart) - BESIDE, 0.0)
+        return beyond
+
+    def near(self, gauge: Gauge, most: Array) -> Mask:
+        """Triangles (t,) that are high enough for a gauge to hold it; of their corners F is `most` (v,) at most."""
+        climb = gauge.lever * gauge.lifts.steepest * self.beyond
+        return np.asarray(np.maximum.reduce(self.each(most)) + climb >= -NEAR * gauge.radius)
 
     def over(self, turns: int, gauges: Sequence[Gauge]) -> tuple[Body, Indices]:
         """The body laid over so many turns, and the number (k,) of the triangle that each of its triangles is.
@@ -92,7 +98,7 @@ class Body:
         for turn in range(turns):
             near = far.copy()
             for gauge, most in zip(gauges, least, strict=True):
-                near &= (np.maximum.reduce(self.each(most[turn])) >= -NEAR * gauge.radius) | self.wide
+                near &= self.near(gauge, most[turn])
             number = np.flatnonzero(near)
             corners.append(self.corners[number] + count * ((turn + ahead[number]) % turns))
             numbers.append(number)
@@ -236,11 +242,11 @@ def _inside(body: Body, drum: DrumIntent, name: str, corners: Indices) -> Array:
     radius = drum.radius if name == BLANK else drum.floor
     flat = body.points[corners][..., :2]
     ends = [(flat[:, k], flat[:, k - 1]) for k in range(3)]
-    sag: Array = np.maximum(radius - np.minimum.reduce([_least_radius(*each) for each in ends]), 0.0)
+    sag: Array = np.maximum(radius - np.minimum.reduce([least_radius(*each) for each in ends]), 0.0)
     return sag
 
 
-def _least_radius(start: Array, last: Array) -> Array:
+def least_radius(start: Array, last: Array) -> Array:
     """Least distance (n,) from the axis of lines from one to another place (n, 2), mm."""
     way = last - start
     square = np.einsum("nk,nk->n", way, way)
@@ -264,7 +270,7 @@ def _stands(body: Body, gauge: Gauge, rest: Indices) -> Stands:
     within = np.maximum.reduce(body.each(body.r)) >= gauge.inner
     metal = ~np.logical_or.reduce(signs)
     across = ~metal & ~np.logical_and.reduce(signs)
-    near = (np.maximum.reduce(body.each(gauge.most(body.phi, z))) >= -NEAR * gauge.radius) | body.wide
+    near = body.near(gauge, gauge.most(body.phi, z))
     touched = within & metal & near
     corner = np.zeros(len(z), dtype=np.bool_)
     corner[body.corners[rest]] = corner[body.corners[touched]] = True
@@ -327,7 +333,7 @@ def _farthest(body: Body, drum: DrumIntent, what: tuple[str, float], own: Mask, 
     if name == BORE and drum.bore is not None:
         return max(worst, _off_outline(drum.bore, start, last, FINE * tolerance))
     radius = drum.radius if name == BLANK else drum.floor
-    return max(worst, radius - float(_least_radius(start, last).min()))
+    return max(worst, radius - float(least_radius(start, last).min()))
 
 
 def _off_outline(bore: Hole, start: Array, last: Array, fine: float) -> float:

@@ -272,7 +272,8 @@ class Gauge:
             rate = y * along / depth + slope
         curve = along**2 - y**2 + slope**2 + v * self.side * bend
         square = y * y + v * v - (v * slope - y * along) ** 2 / np.where(curve > 0.0, curve, np.inf)
-        return Near(v + depth, rate, np.sqrt(np.maximum(square, 0.0)) - self.radius, along)
+        gives = v + depth
+        return Near(gives, rate, self._stepped(gives, square), along)
 
     def held(self, points: Sequence[Array], lift: Array, sine: Array, cosine: Array) -> Held:
         """Points, three columns (n,), at angles with a lift."""
@@ -367,8 +368,17 @@ class Gauge:
         rate = -y * along + v * self.side * slope
         curve = along**2 - y**2 + slope**2 + v * self.side * bend
         square = y * y + v * v - np.where(curve > 0.0, rate**2 / np.where(curve > 0.0, curve, 1.0), 0.0)
+        return self._stepped(stand.gives, square)
+
+    def _stepped(self, gives: Array, square: Array) -> Array:
+        """Distance (n,), mm, of points with F from the flank, by the square of that from the roller's axis.
+
+        A step of Newton's method is too long where a point lies far below the flank. As no flank is steeper than the
+        lift at the least X, such a point is so far from it at least.
+        """
         distance: Array = np.sqrt(np.maximum(square, 0.0)) - self.radius
-        return distance
+        least = -gives / math.hypot(1.0, self.lifts.steepest / self.shortest)
+        return np.where(gives < 0.0, np.maximum(distance, least), distance)
 
     def _guessed(self, phi: Array, r: Array) -> Array:
         """Angle (n,), rad, near a peak of F: where the roller touches with the slope of the lift there."""

@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING, Literal, NamedTuple
 
 import numpy as np
 
+from kin.cylindrical.faces import least_radius
 from kin.numeric.angles import TURN
 from kin.numeric.arrays import paired, runs_of
 from kin.numeric.bernstein import values
@@ -109,6 +110,15 @@ class Drum:
         return np.hypot(self.facets[..., 0], self.facets[..., 1])
 
     @cached_property
+    def least(self) -> Array:
+        """Least distances (t,) of facets from the axis, mm, seen along it; all corners may lie on the rim."""
+        corners = list(np.moveaxis(self.facets[..., :2], 1, 0))
+        sides = [(corners[k - 1], corners[k]) for k in range(3)]
+        turned = np.stack([start[:, 0] * last[:, 1] - start[:, 1] * last[:, 0] for start, last in sides])
+        about = (turned > 0.0).all(axis=0) | (turned < 0.0).all(axis=0)
+        return np.where(about, 0.0, np.minimum.reduce([least_radius(*side) for side in sides]))
+
+    @cached_property
     def normals(self) -> Array:
         """Twice the areas (t, 3) of facets, along their outward normals."""
         a, b, c = np.moveaxis(self.facets, 1, 0)
@@ -117,7 +127,7 @@ class Drum:
     def columns(self, radius: float, theta: Array) -> list[Column]:
         """What lines along the axis meet at a radius, mm, and polar angles (n,), rad."""
         places = radius * np.stack([np.cos(theta), np.sin(theta)], axis=-1)
-        own, at = self._meetings(theta, self.r.min(axis=1) <= radius, self.r.max(axis=1) >= radius)
+        own, at = self._meetings(theta, self.least <= radius, self.r.max(axis=1) >= radius)
         a, b, c = np.moveaxis(self.facets[own], 1, 0)
         with np.errstate(divide="ignore", invalid="ignore"):
             shares = _shares(a[:, :2], b[:, :2], c[:, :2], places[at])

@@ -41,6 +41,7 @@ NEWTON, SETTLED = 12, 3e-13  # steps, and mm of a corner that need no further on
 MEET = 1e-9  # mm: so near two flanks are at a corner
 STEP = 1e-6  # rad: of a difference quotient for Newton's method, which its result does not depend on
 NEAR = 0.1  # rad by which lines of corners between their known radii stay within these
+PARTS = 64  # of a gap, over which its length is summed
 TOGETHER = 1e-9  # of the stroke: tracks so near to one another run together
 PAIRS = {
     "below": ("lower", "lower"),
@@ -104,6 +105,26 @@ class Crossing:
         # on the cylinder a corner is one place, of a and, whole turns on, of b
         return max(math.dist(places[begin], places[end]) for begin, end in LOST.values())
 
+    def gap_within(self, r: float, tolerance: float) -> float:
+        """Greatest length, mm, along the paths of the roller's axis, over which a solid may lack a wall on a cylinder.
+
+        What lies within a tolerance, mm, of the other track counts as gone: at a corner where both walls meet at an
+        angle b that is tolerance/sin b, to first order.
+        """
+        radius, shares, found = np.array([r]), (np.arange(PARTS) + 0.5) / PARTS, []
+        for (track, _), words in LOST.items():
+            k, more, ends = "ab".index(track), 0.0, []
+            for corner in (self.corners[word] for word in words):
+                angles = corner.at(radius)
+                rows = [_row(flank, at, radius) for flank, at in zip(corner.flanks, angles, strict=True)]
+                one, other = (math.atan2(float(z[0]), r * float(phi[0])) for _, _, phi, z in rows)
+                more += tolerance / abs(math.sin(one - other))
+                ends.append(float(angles[k][0]))
+            begin, end = ends
+            slope = self.corners[words[0]].flanks[k].law.derivatives(begin + (end - begin) * shares, 1)[1]
+            found.append((end - begin) * float(np.hypot(r, slope).mean()) + more)
+        return max(found)
+
 
 class Lost(NamedTuple):
     """A stretch that a flank lacks: the corners at which it begins and ends, each with which of its flanks it is."""
@@ -142,6 +163,8 @@ def _settled(flanks: tuple[Flank, Flank], shift: Array | float, r: Array, t: Arr
         if not (off > SETTLED).any():
             break
         det = phi_1 * z_2 - phi_2 * z_1
+        if not det.all():
+            raise CrossingError("two turns of the groove touch without crossing", float(t[np.argmin(np.abs(det))]))
         # phi_1 dt - phi_2 ds = along, z_1 dt - z_2 ds = up
         dt, ds = (phi_2 * up - z_2 * along) / -det, (phi_1 * up - z_1 * along) / -det
         t, s = t + dt, s + ds

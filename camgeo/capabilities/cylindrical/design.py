@@ -63,6 +63,15 @@ class DrumDesign:
         """Length, mm, over which a track lacks a wall at each crossing, at that end of the shoe where it is longer."""
         return [max(crossing.gap(r) for r in self.recipe.bearing) for crossing in self.crossings]
 
+    @property
+    def gap_in_files(self) -> float:
+        """Greatest gap, mm, of a solid that is within its tolerance: the judge counts what lies so near as gone."""
+        export = self.recipe.export
+        solids = [request for request in export.files if request.format.solid]
+        within = max((request.tolerance or export.tolerance for request in solids), default=0.0)
+        found = (each.gap_within(r, within) for each in self.crossings for r in self.recipe.bearing)
+        return max([*self.gaps, *found], default=0.0)
+
     def greatest(self, figure: Callable[[Array], Array]) -> tuple[float, float]:
         """Greatest value of a figure over shaft angles (n,), rad, of the period, and its angle, rad."""
         begin = 0.0

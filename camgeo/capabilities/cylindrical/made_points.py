@@ -19,7 +19,7 @@ from kin.cylindrical.figures import exact_play
 from kin.cylindrical.inspected import read_flank_points
 from kin.cylindrical.measured_flanks import UNKNOWNS, UnlikeError, made_drum
 from kin.numeric.angles import TURN, degrees
-from kin.numeric.check import Check, at_most
+from kin.numeric.check import Check, at_most, failed
 from kin.numeric.errors import UnsettledError
 from kin.numeric.feet import equal_steps
 from kin.numeric.records import dataclass, replace
@@ -47,6 +47,7 @@ WORDS = {
 }
 OF_DISCS = ("probe_radius", "probe_face", "axes_error", "spans", "out")
 MOST_ERROR = 1e3  # mm
+NO_RING = "it takes points all round the turn at one radius, 36 or more without a gap of 20 degrees"
 MOST_NAMED = 5  # outliers
 NEAR = 1.0  # mm, between the radii of two rings that tell a play
 
@@ -145,6 +146,9 @@ def _checks(design: DrumDesign, made: MadeDrum, options: _Options) -> tuple[list
         told = f"by {ring.count} points round a radius of {ring.radius:.6g} mm alone, {ring.waves} waves a turn"
         checks.append(replace(check, surface=name, detail=f"{check.detail}; {told}, {rests}"))
         verdicts[f"{MOTION} {name} {ring.radius:.6g}"] = verdict
+    if limit is not None and not made.rings:
+        checks.append(failed(MOTION, f"not proved: {NO_RING}", unit=follower.unit, limit=follower.told(limit)))
+        verdicts[MOTION] = "not proved"
     return checks, verdicts
 
 
@@ -218,9 +222,7 @@ def _section(
             "no uncertainty of a point is stated: give --probe-error, or verdicts rest on the points as they are"
         )
     if not made.rings:
-        remarks.append(
-            "no motion: it takes points all round the turn at one radius, 36 or more without a gap of 20 degrees"
-        )
+        remarks.append(f"no motion: {NO_RING}")
     return {
         "unit": unit,
         "flanks": flanks,

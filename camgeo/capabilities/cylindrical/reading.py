@@ -108,7 +108,8 @@ def _check_shoe(cam: Values, reader: Reader) -> None:
         return
     if "groove" not in cam["track"]:
         (track,) = cam["track"]
-        reader.fault_at(f"{path}.kind", f"a shoe is led by a groove alone, not by a {track}", None, "give a roller")
+        word = "an end face" if track == "end" else f"a {track}"
+        reader.fault_at(f"{path}.kind", f"a shoe is led by a groove alone, not by {word}", None, "give a roller")
     for key in ("offset", "taper", "at", "arm"):
         if given.get(key):
             remedy = "leave it out: a shoe is on a carriage, and its pin is a radius of the drum"

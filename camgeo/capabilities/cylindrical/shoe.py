@@ -30,6 +30,7 @@ if TYPE_CHECKING:
     from kin.numeric.arrays import Array
 
 ROOM = 1e-4  # of a length by which a shoe in a remedy is longer or shorter than the bound
+SECOND = 0.1  # of what a tolerance adds to a gap, in a remedy, for what is not of first order
 EASED = "give more lift a turn, a wider reversal, or a narrower shoe"  # which makes gaps shorter and bends wider
 TOLD = 3  # crossings that an error names
 
@@ -104,16 +105,19 @@ def demand_led(design: DrumDesign) -> None:
     """Raise RecipeErrors for a roller that would drop into a crossing, and for a shoe too short or too long."""
     recipe, roller = design.recipe, design.recipe.roller
     gap, bend = max(design.gaps, default=0.0), longest(design)
-    least, most = (1.0 + ROOM) * gap, (1.0 - ROOM) * bend.length
+    made = design.gap_in_files
+    least, most = made + ROOM * gap + SECOND * (made - gap), (1.0 - ROOM) * bend.length
     short, long = upward(least / recipe.mm, 5), downward(most / recipe.mm, 5)
     shown, units = partial(_shown, mm=recipe.mm), recipe.units
     passes = (
         f"a shoe of at most {long} {units} passes the bend near {math.degrees(bend.at):.6g} degrees, "
         f"whose least radius is {shown(bend.radius)} {units}"
     )
-    if design.crossings and (roller.shoe is None or not roller.shoe > gap):
-        problem = f"a wall of the groove is missing over {shown(gap)} {units} where its tracks cross, at "
-        problem += _places(design, gap)
+    if design.crossings and (roller.shoe is None or not roller.shoe > made):
+        problem = f"a wall of the groove is missing over {shown(gap)} {units} where its tracks cross, "
+        if roller.shoe is not None and roller.shoe > gap:
+            problem += f"{shown(made)} {units} in a solid within its tolerance, "
+        problem += f"at {_places(design, gap)}"
         remedy = f"give a shoe of {short} {units} or longer"
         if roller.shoe is None:
             problem += ": a roller drops in"
@@ -127,7 +131,9 @@ def demand_led(design: DrumDesign) -> None:
         if not most > max(least, 2.0 * roller.radius):
             remedy = "give a wider bend there, or a roller"
             if design.crossings:
-                remedy = f"{passes}, but the gap of {shown(gap)} {units} where tracks cross needs a longer one: {EASED}"
+                remedy = (
+                    f"{passes}, but the gap of {shown(made)} {units} where tracks cross needs a longer one: {EASED}"
+                )
         raise design.error("cam.follower.length", f"the shoe jams in the bend {where}", remedy)
 
 

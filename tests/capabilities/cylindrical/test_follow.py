@@ -8,6 +8,7 @@ camgeo.capabilities.cylindrical.followed_recipe, kin.cylindrical.running, kin.cy
 from __future__ import annotations
 
 import json
+from itertools import pairwise
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -88,6 +89,28 @@ def test_a_groove_gives_its_recipe_back(
     (tmp_path / "new.yaml").write_text(text.replace("bore: 24}", "bore: 24, keyway: din6885}"), encoding="utf-8")
     assert main(["verify", str(tmp_path / "new.yaml"), str(grooved)]) == 0
     assert "ok" in capsys.readouterr().out
+
+
+@pytest.mark.slow  # booleans of a whole groove
+def test_level_faces_of_another_kernel_have_triangles_along_the_rim(tmp_path: Path, follow: Callable[..., Any]) -> None:
+    """A blank less a roller's way, by booleans: triangles of its ends have all their corners on the blank."""
+    manifold3d, trimesh = pytest.importorskip("manifold3d"), pytest.importorskip("trimesh")
+    theta = np.arange(181) * (2.0 * np.pi / 180)
+    roller = manifold3d.Manifold.cylinder(14.5, 10.0, 10.0, 64).rotate([0, 90, 0]).translate([37.5, 0, 0])
+    ways = [
+        roller.rotate([0, 0, angle]).translate([0, 0, 20.0 + lift])
+        for angle, lift in zip(np.degrees(theta).tolist(), LIFT(theta).tolist(), strict=True)
+    ]
+    way = [manifold3d.Manifold.batch_hull(list(pair)) for pair in pairwise(ways)]
+    blank, core = (manifold3d.Manifold.cylinder(length, r, r, 180) for length, r in ((80.0, 50.0), (90.0, 12.0)))
+    taken = manifold3d.Manifold.batch_boolean([core.translate([0, 0, -5]), *way], manifold3d.OpType.Add)
+    solid = (blank - taken).to_mesh()
+    places = np.asarray(solid.vert_properties)[:, :3]
+    trimesh.Trimesh(places, solid.tri_verts, process=False).export(tmp_path / "made.stl")
+    told, _, rows = follow(tmp_path / "made.stl", "--drum", "auto", "--roller", "10", "--from", "38.5")
+    assert told["drum"] == "groove"
+    lift = rows[rows.dtype.names[1]] - 20.0 - LIFT(np.radians(rows[rows.dtype.names[0]]))
+    assert np.abs(lift).max() < 0.05  # a side of the roller stands 10 (1 - cos(pi/64)) = 0.012 off
 
 
 @pytest.mark.slow  # a finer mesh, and surfaces

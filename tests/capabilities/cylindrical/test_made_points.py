@@ -125,6 +125,18 @@ def test_metal_too_large_with_a_burr(drum: Flanks) -> None:
     assert "mm alone" in told["made-motion"]
 
 
+def test_points_of_half_a_turn_prove_no_motion(drum: Flanks) -> None:
+    """The limit of the motion is not held by the profile alone."""
+    lines = drum.table.read_text("utf-8").splitlines()
+    path = drum.folder / "half.csv"
+    path.write_text("\n".join([*lines[: len(lines) // 2], ""]), encoding="utf-8")
+    report = drum.verified(path)
+    assert not report.ok
+    assert report["made"]["verdicts"]["made-profile lower"] == "ok"
+    assert report["made"]["verdicts"]["made-motion"] == "not proved"
+    assert [check.name for check in report.checks if not check.ok] == ["made-motion"]
+
+
 def test_shifted_along_its_axis(drum: Flanks) -> None:
     path = drum.written(drum.places + np.array([0.0, 0.0, 0.02]))
     made = drum.verified(path)["made"]

@@ -304,6 +304,24 @@ def test_a_follower_that_does_not_pass_is_refused_with_one_that_does(old: str, n
 
 
 @pytest.mark.costly(DRUMS)
+@pytest.mark.parametrize(("law", "tolerance"), [("harmonic", 0.05), ("{uniform: {blend: 90}}", 0.005)])
+def test_the_shoe_of_a_remedy_bridges_gaps_in_files_too(law: str, tolerance: float, tmp_path: Path) -> None:
+    """In a file within the tolerance a gap may be longer; a shoe that is too short for it alone is refused before."""
+    text = re.sub(r"law: \{uniform: \{[^}]*\}\}", f"law: {law}", changed(SCREW, ("length: 55.0}", "length: 30}")))
+    text = re.sub(r"tolerance: [\d.]+", f"tolerance: {tolerance}", text)
+    with pytest.raises(RecipeErrors) as refused:
+        design_of(text)
+    gap, length = (float(x) for x in re.findall(r"(?:missing over|a shoe of) ([\d.]+) mm", str(refused.value)))
+    assert gap < length < gap + 0.05 + 4.0 * tolerance / math.sin(0.2)
+    with pytest.raises(RecipeErrors, match=f"a solid within its tolerance, at .*give a shoe of {length:g} mm"):
+        design_of(text.replace("length: 30}", f"length: {gap + 0.1 * (length - gap)}}}"))
+    path = tmp_path / "screw.yaml"
+    path.write_text(text.replace("length: 30}", f"length: {length}}}"), encoding="utf-8")
+    report = camgeo.export(path, tmp_path / "out")
+    assert report.ok, str(report)
+
+
+@pytest.mark.costly(DRUMS)
 def test_demands_that_contradict_say_what_to_change() -> None:
     """A sharp reversal takes no shoe as long as the gap; the same with wider blends does."""
     sharp = SCREW.replace("90.0, 90.0", "12.0, 12.0")
@@ -325,6 +343,19 @@ def test_demands_that_contradict_say_what_to_change() -> None:
         (
             [("rise: 55.0", "rise: 20.0"), ("return: 55.0", "return: 20.0")],
             "neighbouring turns of the groove run into one",
+        ),
+        (
+            [
+                ("1080.0", "720.0"),
+                ("1080.0", "720.0"),
+                ("}, {return", "}, {dwell: 360}, {return"),
+                ("}}}]", "}}}, {dwell: 360}]"),
+            ],
+            "cam.motion: two turns of the groove touch without crossing, near",
+        ),
+        (
+            [("groove: {depth: 6.0}", "end: top")],
+            "cam.follower.kind: a shoe is led by a groove alone, not by an end face",
         ),
         ([("turns: 6", "turns: 5")], "let them cover 5 turns, 1800 degrees; a track of several turns has cam.turns"),
         ([("turns: 6", "turns: 0")], "cam.turns"),

@@ -91,6 +91,18 @@ def test_a_sound_screw_is_accepted_with_what_was_measured(name, request):
     assert 0.001 < worst < 0.0025
 
 
+@pytest.mark.parametrize("columns", [60, 90])
+def test_a_tall_screw_in_wide_triangles_is_accepted(columns):
+    """Its ends lie far below turns at the other one, farther than a step of Newton's method is good for."""
+    motion = Motion(((60.0, 720.0, "cv-blended"), (-60.0, 360.0, "cv-blended")))
+    tall = screw(motion, roller=4.0, inner=25.0, track=Groove(6.0), level=14.0, length=88.0, shoe=22.0)
+    solid, tolerance = cut(tall, columns, 5, 10), 30.0 * (1.0 - np.cos(np.pi / columns)) + 0.02
+    verdict = judged(solid, tall, tolerance)
+    assert verdict.ok, [check for check in verdict.checks if not check.ok]
+    off = np.abs(outside(tall, walls_of(tall, solid, np.random.default_rng(3), 500)))
+    assert max(flank.measured_error for flank in verdict.flanks) > 0.5 * off.max()
+
+
 def test_the_motion_is_that_of_points_of_the_file_in_every_turn(sound):
     verdict = judged(sound, SCREW)
     chance = np.random.default_rng(2)
