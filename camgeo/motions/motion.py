@@ -8,6 +8,7 @@ displacement is 0, otherwise S begins at 0, unless the ends are open.
 from __future__ import annotations
 
 import math
+import re
 from abc import ABC, abstractmethod
 from functools import cache, lru_cache, partial
 from typing import TYPE_CHECKING, ClassVar
@@ -17,6 +18,7 @@ from camgeo.motions.inputs import PART, Axes
 from camgeo.motions.lift_table import SHEET, SHEET_OF_LENGTHS, TABLE, TABLE_OF_LENGTHS, Rows, read_rows
 from camgeo.motions.lobes import ACCELERATION, ORDERS, lobe_field, read_least, read_sides
 from camgeo.motions.segments import LEAST, REST, read_pairs, read_segments, segment_table, segments_schema
+from camgeo.schema.errors import quote
 from camgeo.schema.fields import MOST, Field, FieldTable, Kind, OwnForm
 from camgeo.schema.json_schema import number_schema, table_schema
 from camgeo.schema.yaml_source import Mapping, Scalar, entries, join
@@ -536,6 +538,10 @@ def _sources(axes: Axes) -> FieldTable:
 
 def _read(axes: Axes, reader: Reader, field: Field, node: Node, path: str) -> MotionSource | None:
     """Read a motion: a list of segments, or a mapping with another source."""
+    if isinstance(node, Scalar) and re.search(rf"\b{axes.over.variable}\b", node.text):
+        shown = quote(node.text)
+        reader.fault(node.mark, path, "a formula stands in a mapping", shown, f"give {{formula: {shown[1:-1]}}}")
+        return None
     if not isinstance(node, Mapping):
         return _read_segments(axes, reader, field, node, path)
     stroke, over = axes

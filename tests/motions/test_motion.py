@@ -192,6 +192,12 @@ def test_a_number_of_a_source_can_be_varied_by_its_path():
             "{formula: t - sin(2*t)/2}",
         ),
         (
+            "4 - 4*cos(2*t)",
+            "cam.motion",
+            "a formula stands in a mapping, given '4 - 4*cos(2*t)'; give {formula: 4 - 4*cos(2*t)}",
+            "{formula: 4 - 4*cos(2*t)}",
+        ),
+        (
             "7",
             "cam.motion",
             "not a list, given 7; give a list of segments",
