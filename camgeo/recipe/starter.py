@@ -86,7 +86,7 @@ FOUR_BAR: Given = {
 }
 _EACH = {
     "toy": Starter(
-        "A toy that prints: two bumps of 15 mm a turn, hand cranked.",
+        "The cam of a toy, to print: two bumps of 15 mm a turn, hand cranked.",
         "disc",
         {
             "base_radius": "24",
