@@ -27,6 +27,7 @@ if TYPE_CHECKING:
     from kin.cylindrical.roller import Gauge
     from kin.numeric.arrays import Array, Indices, Mask
 
+PROFILE, MOTION = "made-profile", "made-motion"  # names of the checks of points, as those of a disc
 UNKNOWNS = "gzxyab"  # a turn about z, shifts along z, x and y, tilts about x and y
 ROUNDS = 6  # of Gauss and Newton
 SETTLED = 1e-9  # mm

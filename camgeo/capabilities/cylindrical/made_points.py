@@ -17,7 +17,7 @@ from camgeo.schema.quantity import read_quantity
 from camgeo.schema.scalars import Complaint
 from kin.cylindrical.figures import exact_play
 from kin.cylindrical.inspected import read_flank_points
-from kin.cylindrical.measured_flanks import UNKNOWNS, UnlikeError, made_drum
+from kin.cylindrical.measured_flanks import MOTION, PROFILE, UNKNOWNS, UnlikeError, made_drum
 from kin.numeric.angles import TURN, degrees
 from kin.numeric.check import Check, at_most, failed
 from kin.numeric.errors import UnsettledError
@@ -35,7 +35,6 @@ if TYPE_CHECKING:
     from kin.cylindrical.measured_flanks import MadeDrum, Measured, Ring
     from kin.numeric.arrays import Array
 
-PROFILE, MOTION = "made-profile", "made-motion"
 ALIGN = {"none": "", "rotation": "g", "height": "z", "rotation-height": "gz", "best-fit": "gzxyab"}
 WORDS = {
     "g": "turned about z",
