@@ -220,8 +220,9 @@ def test_a_kind_in_another_unit_stays_the_same_cam(name: str) -> None:
         stroke = next(value for path, value in plain.items() if re.fullmatch(r"cam\.motion.*\.rise", path))
         sizes.append(float(stroke) * (1.0 if "arm:" in text else UNITS[recipe.units]))  # an arm swings
     assert sizes[1] == pytest.approx(sizes[0], rel=1e-6)
-    radius = next(value for path, value in plain.items() if path.endswith("follower.radius"))
-    wrong = re.sub(rf"\bradius: {re.escape(radius)}\b", f"radius: {0.99 * float(radius)}", new)
+    sized = r"cam\.follower\.(radius|width)"  # a roller has a radius, a shoe a width
+    key, size = next((found[1], value) for path, value in plain.items() if (found := re.fullmatch(sized, path)))
+    wrong = re.sub(rf"\b{key}: {re.escape(size)}\b", f"{key}: {0.99 * float(size)}", new)
     assert not live._alike(live._recipe(name, text), live._recipe(name, wrong))
 
 
