@@ -120,7 +120,9 @@ def test_other_files_give_it_back(form: str, tolerance: str, tmp_path: Path, fol
     told, recipe, rows = follow(made(text, tmp_path), "--drum", "groove", "--roller", "10", "--from", "38")
     assert recipe["cam"]["motion"] == MOTION
     assert recipe["cam"]["track"]["groove"] == {"depth": 12.5, "clearance": pytest.approx(0.03, abs=6e-4)}
-    assert np.abs(rows["position_mm"] - (20.0 + LIFT(THETA))).max() < max(told["error"], 0.003)
+    # facets tell how far they are off; splines are off by the tolerance, which moves the roller by e/cos a at most
+    within = float(tolerance) / np.cos(np.radians(45.15)) if form == "step" else told["error"]
+    assert np.abs(rows["position_mm"] - (20.0 + LIFT(THETA))).max() < within
 
 
 @pytest.mark.slow  # solids are made and followed at all angles
