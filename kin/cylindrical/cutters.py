@@ -106,7 +106,7 @@ class _Points(NamedTuple):
         return _Points(*(values[..., rows, columns] for values in self))
 
     def thinned(self, rows: Indices, columns: Indices) -> _Points:
-        """Those where some of the rows and columns cross."""
+        """Points at the places `rows` (k,) and the angles `columns` (l,), each place with each angle."""
         return _Points(*(values[..., rows[:, None], columns] for values in self))
 
 

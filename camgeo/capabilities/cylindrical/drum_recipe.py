@@ -43,7 +43,7 @@ class Roller:
 
     @property
     def word(self) -> str:
-        """What it is called."""
+        """Name of the follower in messages: roller, conical roller or shoe."""
         return "shoe" if self.shoe is not None else "conical roller" if self.taper else "roller"
 
     @property

@@ -103,7 +103,7 @@ class FollowedDrum:
 
     @property
     def scale(self) -> float:
-        """One mm or rad in that unit."""
+        """Factor by which positions, mm or rad, become numbers of the reported unit."""
         return self.run.follower.told(1.0)
 
     @property
@@ -256,7 +256,7 @@ class FollowedDrum:
 
     @property
     def remarks(self) -> tuple[str, ...]:
-        """What is to be known besides, in words."""
+        """Sentences of the report: what the solid leaves open, and how sure the motion is."""
         told = [*self.drum.remarks]
         if self.run.error > self.within:
             needed = f"{self.lever * self.run.error:.2g}"
