@@ -23,6 +23,16 @@ if TYPE_CHECKING:
     from support.firefox import Firefox
 
 PATIENCE = 240.0  # seconds that Python's start may take on a busy machine
+RESTED = """new Promise((done) => {
+  const place = () => `${scrollY} ${document.documentElement.scrollHeight}`;
+  let last = place(), frames = 0;
+  const look = () => {
+    frames = place() === last ? frames + 1 : 0;
+    last = place();
+    if (frames < 20) requestAnimationFrame(look); else done(true);
+  };
+  look();
+})"""
 
 
 def why_not() -> str:
@@ -96,6 +106,10 @@ class Tab:
     def settle(self) -> None:
         """Wait until every change of the recipe is answered, and the worker rests."""
         self.wait("document.body.dataset.answered === String(changeCount) && !work.current")
+
+    def rest(self) -> None:
+        """Wait until nothing scrolls the page or changes its height any more."""
+        self.ask(RESTED)
 
     def ask(self, expression: str) -> Any:
         """Value of an expression in the page."""
