@@ -9,6 +9,7 @@ TYPE_CHECKING = False  # as typing has it
 if TYPE_CHECKING:
     from camgeo.capabilities.camshaft.keys import CamshaftRecipe  # needs: camshaft
     from camgeo.capabilities.camshaft.library import CamshaftDesign  # needs: camshaft
+    from camgeo.capabilities.cylindrical.followed import FollowedDrum  # needs: cylindrical
     from camgeo.capabilities.follow.library import Followed, Rest, follow  # needs: follow
     from camgeo.capabilities.sweep.library import Candidate, Search, search  # needs: sweep
 
@@ -17,6 +18,7 @@ if TYPE_CHECKING:
         "CamshaftRecipe",  # needs: camshaft
         "Candidate",  # needs: sweep
         "Followed",  # needs: follow
+        "FollowedDrum",  # needs: cylindrical
         "Rest",  # needs: follow
         "Search",  # needs: sweep
         "follow",  # needs: follow

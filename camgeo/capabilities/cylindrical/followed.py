@@ -97,7 +97,12 @@ class FollowedDrum:
     unjudged: str = ""
 
     @property
-    def unit(self) -> Unit:
+    def unit(self) -> Literal["mm", "rad"]:
+        """Unit of the motion: mm on a carriage, rad on an arm."""
+        return "mm" if self.run.follower.arm is None else "rad"
+
+    @property
+    def told(self) -> Unit:
         """Unit of positions as they are shown."""
         return self.run.follower.unit
 
@@ -127,6 +132,22 @@ class FollowedDrum:
         return equal_steps(len(self.position))
 
     @property
+    def lift(self) -> float:
+        """Greatest position less the least, mm or rad."""
+        return float(np.ptp(self.position))
+
+    @property
+    def velocity(self) -> Array:
+        """Velocity (n,), mm or rad by radian of the shaft, as the difference over three steps to both sides."""
+        steps = np.roll(self.position, -SPREAD) - np.roll(self.position, SPREAD)
+        return np.asarray(steps * (len(self.position) / (2.0 * SPREAD * TURN)))
+
+    @property
+    def pressure_angle(self) -> Array:
+        """Greatest pressure angle (n,), rad, about, at the roller's inner end."""
+        return self.run.lean
+
+    @property
     def play(self) -> Array | None:
         """Play (n,) of a roller in a groove, or of two rollers on a rib over their distance; None of an end cam."""
         if not self.run.closed:
@@ -147,13 +168,13 @@ class FollowedDrum:
     @cached_property
     def rests(self) -> list[MeasuredDwell]:
         """Dwells in the order of the turn."""
-        return dwells_of(self.position, self.within, self.unit)
+        return dwells_of(self.position, self.within, self.told)
 
     @cached_property
     def programme(self) -> Programme | None:
         """The nearest programme of dwells and strokes; None of a roller that does not move."""
         motion = self._motion
-        return recognised(motion, self.within, self.unit) if np.ptp(self.position) > 2.0 * self.within else None
+        return recognised(motion, self.within, self.told) if np.ptp(self.position) > 2.0 * self.within else None
 
     @property
     def _motion(self) -> DrumMotion:
@@ -170,8 +191,8 @@ class FollowedDrum:
         angles, levels = programme.uncertainty
         open_ = np.maximum(angles, error * programme.hidden.boundaries), np.maximum(levels, error)
         near = min(programme.greatest + error, most)
-        rough = Recognised(self._motion, replace(programme, uncertainty=open_), near, self.scale, self.unit)
-        known = Recognised(self._motion, programme, most, self.scale, self.unit)
+        rough = Recognised(self._motion, replace(programme, uncertainty=open_), near, self.scale, self.told)
+        known = Recognised(self._motion, programme, most, self.scale, self.told)
         rows, why = rough.segments()
         if rows is None:
             rows, why = known.segments()
@@ -182,7 +203,7 @@ class FollowedDrum:
         if rows is None:
             return Segments(None, [], least, why)
         lines = known.lines()
-        lines.append(f"the programme is within {self.scale * self.programme.greatest:.2g} {self.unit} of the motion")
+        lines.append(f"the programme is within {self.scale * self.programme.greatest:.2g} {self.told} of the motion")
         return Segments(rows, lines, known.zero)
 
     def _at(self, place: int) -> float:
@@ -216,7 +237,7 @@ class FollowedDrum:
         return {
             "file": self.path.name,
             "follower": self.words,
-            "unit": self.unit,
+            "unit": self.told,
             "drum": run.kind,
             "radius": self.drum.radius,
             "floor": run.floor,
@@ -269,7 +290,7 @@ class FollowedDrum:
 
     def summary(self) -> str:
         """Text for a terminal."""
-        told, unit = self.document(), self.unit
+        told, unit = self.document(), self.told
         least, most, play = told["least"], told["greatest"], told["play"]
         rows = [f"{escaped(told['file'])}: {told['follower']}"]
         rows.append(
@@ -312,12 +333,11 @@ class FollowedDrum:
 
         The velocity is that over three steps to both sides.
         """
-        n, scale, unit = len(self.position), self.scale, self.unit
-        steps = np.roll(self.position, -SPREAD) - np.roll(self.position, SPREAD)
+        scale, unit = self.scale, self.told
         columns = {
             "shaft_deg": np.degrees(self.theta),
             f"position_{unit}": scale * self.position,
-            f"velocity_{unit}_per_rad": scale * steps * (n / (2.0 * SPREAD * TURN)),
+            f"velocity_{unit}_per_rad": scale * self.velocity,
             "pressure_angle_deg": np.degrees(self.run.lean),
         }
         for name, row in (("lower", self.run.lower), ("upper", self.run.upper)):

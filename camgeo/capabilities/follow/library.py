@@ -4,13 +4,15 @@ from __future__ import annotations
 
 import math
 from functools import cached_property
-from typing import TYPE_CHECKING, Literal
+from typing import TYPE_CHECKING, Any, Literal, overload
 
 import numpy as np
 
+from camgeo.capabilities.follow.extension import OTHER_INPUTS
 from camgeo.capabilities.follow.follower import TRACKS, describe_follower
 from camgeo.capabilities.follow.outline import Reading, read_outline
-from camgeo.common.arguments import demand_type, number_of, path_of, short_repr, text_of, whole_of
+from camgeo.capabilities.follow.summary import document, summary
+from camgeo.common.arguments import demand_type, number_of, path_of, short_repr, text_of, tuple_of, whole_of
 from camgeo.common.errors import CallError, with_packages
 from camgeo.common.rounding import upward
 from camgeo.common.terminal import escaped
@@ -24,10 +26,12 @@ from kin.numeric.records import dataclass, field, replace
 from kin.read.points import SUFFIXES
 
 if TYPE_CHECKING:
+    from collections.abc import Mapping
     from os import PathLike
     from pathlib import Path
 
     from camgeo.api.report import Report
+    from camgeo.capabilities.follow.extension import FollowedOver, OtherInputs
     from camgeo.capabilities.follow.follower import FollowerDescription, Track
     from camgeo.capabilities.follow.outline import Outline
     from camgeo.common.units import Units
@@ -384,6 +388,21 @@ class Followed:
             return {"kind": "constant-breadth", "base_radius": base}
         return {"kind": "constant-diameter", "base_radius": base, "roller_radius": f"{self.follower.touch.radius!r}"}
 
+    def document(self) -> dict[str, Any]:
+        """The figures as plain data; lengths in mm, angles in degrees."""
+        return document(self)
+
+    def summary(self) -> str:
+        """Text for a terminal."""
+        return summary(self)
+
+    def page(self) -> str:
+        """HTML of the page of this motion's recipe, with the verdict on the file.
+
+        Raises CallError where `unjudged` says why, and CallError or RecipeErrors where the motion makes no recipe.
+        """
+        return judged_by_recipe(self).page or ""
+
 
 def _quoted(text: str) -> str:
     """The text as a double-quoted scalar of YAML."""
@@ -392,6 +411,32 @@ def _quoted(text: str) -> str:
     return json.dumps(text, ensure_ascii=False)
 
 
+@overload
+def follow(
+    file: str | PathLike[str],
+    *,
+    roller: float | None = None,
+    shoe: float | None = None,
+    flat: bool = False,
+    width: float | None = None,
+    offset: float = 0.0,
+    arm: tuple[float, ...] | float | None = None,
+    leading: bool = False,
+    yoke: bool = False,
+    track: Track = "external",
+    units: Units | None = None,
+    gap: float | None = None,
+    across: Literal["arc", "chord"] | None = None,
+    mirror: Literal["x", "y"] | None = None,
+    turn: float = 0.0,
+    body: int | str | None = None,
+    at: tuple[float, float] = (0.0, 0.0),
+    rotation: Literal["cw", "ccw"] = "cw",
+    reading: float = READING,
+    steps: int = STEPS,
+) -> Followed: ...
+@overload
+def follow(file: str | PathLike[str], **arguments: object) -> FollowedOver: ...
 @with_packages()
 def follow(
     file: str | PathLike[str],
@@ -415,7 +460,8 @@ def follow(
     rotation: Literal["cw", "ccw"] = "cw",
     reading: float = READING,
     steps: int = STEPS,
-) -> Followed:
+    **other: object,
+) -> Followed | FollowedOver:
     """Motion of a follower that runs on the contour of a drawing or a solid; lengths in mm.
 
     The follower has a `roller` or a curved `shoe` of a radius, a roller of 0 being a knife edge, or is `flat`, perhaps
@@ -427,12 +473,15 @@ def follow(
     Ends of a drawing within `gap` are joined, by default those that the file's digits or its size explain. `across`
     closes a contour that is open, by an arc about the shaft or a chord. The contour is mirrored in the axis `mirror`
     through the shaft, then turned counter-clockwise by `turn`, degrees. Of a solid with several bodies `body` is the
-    number, from 1, or the name of one. A
-    dwell is within `reading` of its level. The motion is given at `steps` equal steps of a turn, from 36 to 100,000.
+    number, from 1, or the name of one. A dwell is within `reading` of its level. The motion is given at `steps` equal
+    steps of a turn, from 36 to 100,000.
+
+    Cams that are no discs have arguments of their own (`other`): docs/follow.md lists them.
 
     Raises CallError for a file that cannot be read or has no such contour, for arguments that are wrong or do not go
     together, where the follower does not meet the contour or its contact leaves a face of `width`, and for a roller
-    that no groove holds; SurroundingsError for a package that is missing, TypeError for an argument of a wrong type.
+    that no groove holds; SurroundingsError for a package that is missing, TypeError for an argument that is unknown or of a wrong
+    type.
     """
     # arguments are checked first
     path = path_of("file", file)
@@ -441,19 +490,12 @@ def follow(
     lengths = {"roller": roller, "shoe": shoe, "width": width}
     touch = {name: None if value is None else number_of(name, value) for name, value in lengths.items()}
     text_of("track", track, tuple(TRACKS), "a track")
-    follower = describe_follower(
-        **touch,
-        flat=flat,
-        offset=number_of("offset", offset),
-        arm=_numbers("arm", () if arm is None else arm if isinstance(arm, tuple) else (arm,)),
-        leading=leading,
-        yoke=yoke,
-        track=track,
-    )
+    beside = number_of("offset", offset)
+    led = tuple_of("arm", () if arm is None else arm if isinstance(arm, tuple) else (arm,))
     if units is not None:
         text_of("units", units, tuple(UNIT_MM), "a unit")
     text_of("rotation", rotation, ("cw", "ccw"), "a rotation")
-    place = _numbers("at", at)
+    place = tuple_of("at", at)
     if len(place) != LENGTHS or not all(math.isfinite(value) and abs(value) <= MOST for value in place):
         raise CallError("at is the place of the shaft in the file: two lengths in mm, x and y")
     bridged = None if gap is None else number_of("gap", gap)
@@ -473,6 +515,17 @@ def follow(
         raise CallError(f"a reading is a length above 0, not {short_repr(reading)}")
     if not LEAST_STEPS <= count <= MOST_STEPS:
         raise CallError(f"a turn is looked at in {LEAST_STEPS} to {MOST_STEPS} steps, not {short_repr(steps)}")
+    given = {"flat": flat, "leading": leading, "yoke": yoke, "track": track, **touch, "offset": beside}
+    if (answers := _of_other(other)) is not None and answers.follow is not None:
+        from argparse import Namespace
+
+        if count != STEPS:
+            raise CallError("steps are of discs: leave steps out")
+        given |= {"file": path, "arm": led or None, "units": units, "gap": bridged, "across": across, "mirror": mirror}
+        given |= {"turn": turned, "body": body, "at": place, "rotation": rotation, "reading": level}
+        unset = dict(answers.alone.values())
+        return answers.follow(Namespace(**given, **{**unset, **other}))
+    follower = describe_follower(**touch, flat=flat, offset=beside, arm=led, leading=leading, yoke=yoke, track=track)
     # the contour, and the follower by contact on it
     unit = None if units is None else UNIT_MM[units]
     asked = Reading(
@@ -521,10 +574,23 @@ def _require_groove(name: str, motion: MeasuredMotion, follower: FollowerDescrip
         )
 
 
-def _numbers(name: str, values: object) -> tuple[float, ...]:
-    """Numbers of an argument; raises TypeError for anything but a tuple of numbers."""
-    demand_type(name, values, tuple, "a tuple of numbers")
-    return tuple(number_of(name, value) for value in values) if isinstance(values, tuple) else ()
+def _of_other(other: Mapping[str, object]) -> OtherInputs | None:
+    """Answers of the capability whose cams are asked for by arguments beside those of discs; None without any.
+
+    Raises TypeError for an argument that nothing knows, CallError for one that goes with another, and for arguments of
+    two kinds of cams.
+    """
+    every = [answers for name in OTHER_INPUTS.answering() if (answers := OTHER_INPUTS[name]).option] if other else []
+    found = [answers for answers in every if other.get(answers.option) is not None]
+    for name in other:
+        owners = [answers for answers in every if name in {answers.option, *dict(answers.alone.values())}]
+        if not owners:
+            raise TypeError(f"follow() got an unexpected keyword argument {name!r}")
+        if name != owners[0].option and owners[0] not in found:
+            raise CallError(f"{name} goes with {owners[0].option}: give both, or leave {name} out")
+    if len(found) > 1:
+        raise CallError(f"a cam is of one kind: give {' or '.join(answers.option for answers in found)}, not both")
+    return found[0] if found else None
 
 
 def judged_by_recipe(followed: Followed) -> Report:
