@@ -25,7 +25,8 @@ from segments import changed, drawn
 import camgeo
 from camgeo.api.report import explanation
 from camgeo.api.root import root_by_key, root_of
-from camgeo.capabilities.follow.library import READING, judged_by_recipe  # needs: follow
+from camgeo.capabilities.follow.followed import judged_by_recipe  # needs: follow
+from camgeo.capabilities.follow.library import READING  # needs: follow
 from camgeo.checks.declared import declaration
 from camgeo.common.rounding import upward  # needs: follow
 from camgeo.files.errors import MissingExtraError

@@ -10,7 +10,8 @@ if TYPE_CHECKING:
     from camgeo.capabilities.camshaft.keys import CamshaftRecipe  # needs: camshaft
     from camgeo.capabilities.camshaft.library import CamshaftDesign  # needs: camshaft
     from camgeo.capabilities.cylindrical.followed import FollowedDrum  # needs: cylindrical
-    from camgeo.capabilities.follow.library import Followed, Rest, follow  # needs: follow
+    from camgeo.capabilities.follow.followed import Followed, Rest  # needs: follow
+    from camgeo.capabilities.follow.library import follow  # needs: follow
     from camgeo.capabilities.sweep.library import Candidate, Search, search  # needs: sweep
 
     __all__: list[str] = [

@@ -12,7 +12,7 @@ import pytest
 from support.heavy import ezdxf
 
 import camgeo
-from camgeo.capabilities.follow.library import judged_by_recipe
+from camgeo.capabilities.follow.followed import judged_by_recipe
 from camgeo.cli.main import main
 
 if TYPE_CHECKING:

@@ -19,8 +19,7 @@ from support.heavy import ezdxf
 from support.places import RECIPES
 
 import camgeo
-from camgeo.capabilities.follow.summary import summary
-from camgeo.capabilities.follow.library import judged_by_recipe
+from camgeo.capabilities.follow.followed import judged_by_recipe, summary
 from camgeo.cli.exit_status import OK, WRONG
 from camgeo.cli.main import main
 from kin.contour.about import tracks
