@@ -429,9 +429,12 @@ def _bridged(lower: Array, upper: Array, held: Mask) -> tuple[Array, Array]:
     if not both.any():
         raise UnknownError("the groove has nowhere both of its walls, so that its play is not told")
     n, steps = len(lower), np.arange(len(lower))
-    play = np.interp(steps, steps[both], (upper - lower)[both], period=n)
+    # facets are as wide as some steps: the mean of these has less of their error
+    known = (upper - lower)[both]
+    mean = np.mean([np.roll(known, k) for k in range(-FIT // 2, FIT // 2 + 1)], axis=0)
+    play = np.interp(steps, steps[both], mean, period=n)
     lower = np.where(held[0], lower, upper - play)
-    free = ~held.any(axis=0)
+    free: Mask = ~(held[0] | held[1])
     for first in np.flatnonzero(free & ~np.roll(free, 1)):
         length = int(np.argmin(np.roll(free, -first)))
         near = np.concatenate([np.arange(-FIT, 0), length + np.arange(FIT)])

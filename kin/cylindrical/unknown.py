@@ -39,7 +39,7 @@ SAME = 1e-7  # mm: crossings of a line nearer than this are one, on an edge betw
 WIDE = 1.0  # rad, of a triangle that is looked at from all angles
 BENT = math.radians(20.0)  # a sharper edge is an edge of the part, and none between two facets of a face
 MOST_BENT = 0.999  # of the edges between facets stand off no farther than is told: single ones do where a face ends
-MOST_CROSSED = 0.99  # of them where a groove crosses itself
+MOST_CROSSED = 0.995  # of them where a groove crosses itself
 UPRIGHT = 0.5  # of a normal along the radius: of a facet that may be of a flank
 
 

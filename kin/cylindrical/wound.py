@@ -23,7 +23,7 @@ if TYPE_CHECKING:
     from kin.numeric.arrays import Array, Indices, Mask
 
 SLOPE = 24  # lines at the end of a run, over which its slope is taken
-SHORT = 4  # lines that a run of one turn has at least
+SHORT = 2  # lines that a run of one turn has at least
 MOST_CROSSED = 4  # turns that meet at one place
 ASTRAY = 0.25  # of the width of a groove, by which a turn may miss the run that it goes on in
 NEARLY = 0.1  # of it, within which an edge of a common gap may be a wall of this turn, by the way between both runs
@@ -206,20 +206,20 @@ def _crossed(one: _Run, other: _Run, columns: Sequence[Column], radius: float) -
     near = np.abs(by_wall - middle[:, None]) <= NEARLY * width[:, None]
     # where the common gap is about as wide as one turn, either may have an edge
     told = near & (np.abs(np.diff(by_wall, axis=1)) > LIKE * width[:, None])
-    known = np.concatenate([[0], places[told.any(axis=1)], [ahead]])
+    known = [0, *places[told.any(axis=1)].tolist(), ahead]
     heights = np.where(told[:, 0], by_wall[:, 0], by_wall[:, 1])[told.any(axis=1)]
-    heights = np.concatenate([one.middle[-1:], heights, other.middle[:1]])
-    for k in np.flatnonzero(np.diff(known) > 1):
+    heights = [float(one.middle[-1]), *heights.tolist(), float(other.middle[0])]
+    for k in np.flatnonzero(np.diff(known) > 1).tolist():
         inside = np.arange(known[k] + 1, known[k + 1])
         slopes = [
-            float(np.polyfit(known[part], heights[part], 1)[0]) if part.stop - part.start > 1 else _slope(run, end)
+            float(np.polyfit(known[part], heights[part], 1)[0]) if len(known[part]) > 1 else _slope(run, end)
             for part, run, end in (
                 (slice(max(k + 1 - SLOPE, 0), k + 1), one, -1),
                 (slice(k + 1, k + 1 + SLOPE), other, 0),
             )
         ]
         middle[inside - 1] = _cubic(known[k : k + 2], heights[k : k + 2], slopes, inside)
-    middle[known[1:-1] - 1] = heights[1:-1]
+    middle[np.array(known[1:-1], dtype=np.intp) - 1] = heights[1:-1]
     there = np.abs(by_wall - middle[:, None]) <= CLOSE * width[:, None]
     return middle[:, None] + 0.5 * np.stack([-width, width], axis=1), there
 

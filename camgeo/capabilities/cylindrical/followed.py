@@ -142,7 +142,8 @@ class FollowedDrum:
     @property
     def bridged(self) -> list[tuple[float, float]]:
         """Stretches of shaft angles, (begin, end), rad, in which no flank holds the pin: positions are on a cubic."""
-        free = stretches(equal_steps(len(self.position)), ~self.run.touches.any(axis=0))
+        lower, upper = self.run.touches
+        free = stretches(equal_steps(len(lower)), ~(lower | upper))
         return [(begin * self.turns, end * self.turns) for begin, end in free]
 
     @property
