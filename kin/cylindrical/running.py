@@ -50,7 +50,7 @@ ENDS: tuple[Kind, ...] = ("top", "bottom")
 LOOKS = 2880  # lines along the axis, over a turn
 STEPS = 720  # angles at which the roller is set down
 GAP = 0.5  # mm that a roller stands off the floor where it is not said where it begins
-BENEATH = 1e-3  # of the radius of the blank, by which lines lie within it where no floor is known yet
+BENEATH = 1e-3  # of the radius of the blank, by which lines lie within its facets, and a roller may stand out of it
 ROUNDS = 4  # of the angle at which a roller on an arm passes over a point
 STILL = 4.0  # times the facets' sag and rounding: an end that varies by less is no track
 LEANING = 0.2  # of an arm's length, by which its swing may move the roller aside where nothing is known of it yet
@@ -169,7 +169,8 @@ def run(drum: Drum, stated: StatedRoller) -> Run:
             f"the blank is at {drum.radius:.6g} mm, and the roller bears {begins}to {outer:.6g} mm",
             "give from and to between floor and blank",
         )
-    probe = 0.5 * (stated.inner + outer) if stated.inner is not None else min(outer, (1.0 - BENEATH) * drum.radius)
+    beneath = (1.0 - BENEATH) * drum.rim
+    probe = 0.5 * (stated.inner + outer) if stated.inner is not None else min(outer, beneath)
     track = _track(drum, stated, probe)
     floor = _floor(drum, track, stated, probe)
     inner = floor + GAP if stated.inner is None else stated.inner
@@ -383,7 +384,7 @@ def _touches(drum: Drum, track: _Track, stated: StatedRoller, radii: tuple[float
     middle = 0.5 * (track.lower + track.upper)
     held, gap = np.ones((2, count), dtype=np.bool_), 0.0
     for radius in radii:
-        at = min(radius, (1.0 - BENEATH) * drum.radius)
+        at = min(radius, (1.0 - BENEATH) * drum.rim)
         own = _alike(windings(drum.columns(at, _looks()), at), middle, at)
         slope = np.gradient(np.concatenate([middle[-1:], middle, middle[:1]]))[1:-1] * (LOOKS / TURN)
         sine = slope / np.hypot(slope, at)

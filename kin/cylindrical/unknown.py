@@ -40,6 +40,7 @@ WIDE = 1.0  # rad, of a triangle that is looked at from all angles
 BENT = math.radians(20.0)  # a sharper edge is an edge of the part, and none between two facets of a face
 MOST_BENT = 0.999  # of the edges between facets stand off no farther than is told: single ones do where a face ends
 MOST_CROSSED = 0.995  # of them where a groove crosses itself
+FACING = 0.9  # of a normal along the radius: of a facet that may be of the blank
 UPRIGHT = 0.5  # of a normal along the radius: of a facet that may be of a flank
 
 
@@ -128,6 +129,14 @@ class Drum:
         turned = np.stack([start[:, 0] * last[:, 1] - start[:, 1] * last[:, 0] for start, last in sides])
         about = (turned > 0.0).all(axis=0) | (turned < 0.0).all(axis=0)
         return np.where(about, 0.0, np.minimum.reduce([least_radius(*side) for side in sides]))
+
+    @cached_property
+    def rim(self) -> float:
+        """Radius, mm, within which no line along the axis lies beneath a facet of the blank, but in the metal."""
+        out = np.einsum("nk,nk->n", self.normals[:, :2], self.facets[..., :2].mean(axis=1))
+        length = np.linalg.norm(self.normals, axis=1) * np.hypot(*self.facets[..., :2].mean(axis=1).T)
+        own = (self.r.min(axis=1) >= (1.0 - ROUND) * self.radius) & (out > FACING * length)
+        return float(self.least[own].min(initial=self.radius))
 
     @cached_property
     def normals(self) -> Array:
