@@ -101,12 +101,12 @@ def _drawing(recipe: DrumRecipe, made: MadeDrum) -> str:
 
     A deviation points out of the metal where there is too much of it, red; else into it, blue.
     """
-    girth = TURN * recipe.radius
+    girth, length = TURN * recipe.radius, recipe.part.thickness or 0.0
     most = max(float(np.abs(flank.e).max()) for flank in made.flanks)
-    magnified = float(f"{SHARE * min(girth, recipe.part.thickness) / max(most, 1e-9):.1g}")
+    magnified = float(f"{SHARE * min(girth, length) / max(most, 1e-9):.1g}")
     thin, letter = girth / 1000.0, LETTER * girth
     every = [_feet(recipe, flank) for flank in made.flanks]
-    ends = f"M0,0H{girth:.5g}M0,{-recipe.part.thickness:.5g}H{girth:.5g}"
+    ends = f"M0,0H{girth:.5g}M0,{-length:.5g}H{girth:.5g}"
     parts = [f'<path d="{ends}" stroke="{INK}" stroke-width="{thin:.5g}"/>']
     for flank, own in zip(made.flanks, every, strict=True):
         chosen = np.linspace(0, len(flank.e) - 1, min(MOST_DRAWN, len(flank.e))).astype(np.intp)
@@ -134,7 +134,7 @@ def _drawing(recipe: DrumRecipe, made: MadeDrum) -> str:
     )
     words = f"{bar:.6g} {unit}; deviation magnified {magnified:.6g} times; polar angles of the drum, degrees"
     parts.append(word(long + letter, foot + 0.35 * letter, words, letter, "start"))
-    margin, high = MARGIN * girth, max(recipe.part.thickness, *(float(feet[:, 2].max()) for feet in every))
+    margin, high = MARGIN * girth, max(length, *(float(feet[:, 2].max()) for feet in every))
     caption = f"{one_line(recipe.name)}: deviation magnified {magnified:.6g} times; out of the metal is too much"
     box = f"{-margin:.6g} {-high - margin:.6g} {girth + 2.0 * margin:.6g} {high + margin + 6.0 * letter:.6g}"
     return f'<svg xmlns="http://www.w3.org/2000/svg" viewBox="{box}"><title>{caption}</title>{"".join(parts)}</svg>\n'

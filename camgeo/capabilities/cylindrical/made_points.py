@@ -75,6 +75,10 @@ def judge(design: DrumDesign, call: FileCall, clock: Clock) -> Results:
     """
     recipe, options = design.recipe, _options(design, call.options)
     names = ", ".join(escaped(str(path)) for path in call.paths)
+    if recipe.turns > 1:
+        raise CallError(
+            f"{names}: points of a drum of several turns are not judged; give a solid of it, as a scan in STL"
+        )
     if recipe.undercut == "shorten" and any(design.tips.values()):
         raise CallError(f"{names}: points of a drum whose undercut is cut off are not judged; give undercut: refuse")
     places, flanks, where = [], [], []

@@ -58,8 +58,10 @@ def follow(
     reading: float = READING,
     steps: int = STEPS,
 ) -> Followed: ...
-@overload
-def follow(file: str | PathLike[str], **arguments: Any) -> FollowedOver: ...  # noqa: ANN401 - of each kind of cam its own
+@overload  # needs: cylindrical
+def follow(file: str | PathLike[str], *, drum: str, **of_drums: Any) -> FollowedOver: ...  # noqa: ANN401 # needs: cylindrical
+@overload  # needs: linear
+def follow(file: str | PathLike[str], *, linear: tuple[float, ...], **of_plates: Any) -> FollowedOver: ...  # noqa: ANN401 # needs: linear
 @with_packages()
 def follow(
     file: str | PathLike[str],

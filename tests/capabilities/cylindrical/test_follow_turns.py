@@ -148,6 +148,7 @@ def test_another_turn_begins_the_motion(spiral: Path) -> None:
     pins = Pins(SPIRAL_ROWS, 4.0)
     third = 11.0 + float(pins(np.array([4.0 * math.pi]))[0])
     followed = camgeo.follow(spiral, drum="groove", width=8, rotation="ccw", height=round(third), turns=4)
+    assert isinstance(followed, camgeo.FollowedDrum)
     off = followed.position - 11.0 - pins(followed.theta + 4.0 * math.pi)
     assert np.abs(off).max() < 0.05
     # a shoe whose length is not told is longer than the longest gap, and a line says so
@@ -207,7 +208,8 @@ def test_recipes_come_back(case: Any, tmp_path: Path, capsys: pytest.CaptureFixt
     told = json.loads(capsys.readouterr().out)
     rows = np.genfromtxt(tmp_path / "motion.csv", delimiter=",", names=True)
     off = rows["position_mm"] - 14.0 - lift(rows["shaft_deg"])
-    assert np.abs(off).max() < min(told["error"], 0.02)
+    # on the other wall of a crossing the error of the play counts as well
+    assert np.abs(off).max() < min(2.0 * told["error"], 0.02)
     assert told["play"]["least"] == pytest.approx(0.05, abs=0.025)
     text = (tmp_path / "new.yaml").read_text("utf-8")
     assert f"turns: {told['turns']}" in text

@@ -16,6 +16,7 @@ import numpy as np
 import pytest
 from capabilities.cylindrical.made_drums import GROOVE, RIB, TOP, changed
 from capabilities.cylindrical.positions import Lift
+from capabilities.cylindrical.wound_drums import SPIRAL
 
 import camgeo
 from camgeo.cli.main import main
@@ -237,6 +238,13 @@ def test_units_of_a_bare_heading(drum: Flanks, capsys: pytest.CaptureFixture[str
     path = drum.written(drum.places / 25.4, "x,y,z")
     assert main(["verify", str(drum.recipe), str(path), "--units", "inch"]) == 0
     assert "flank upper" in capsys.readouterr().out
+
+
+def test_several_turns_are_refused(drum: Flanks) -> None:
+    path = drum.folder / "spiral.yaml"
+    path.write_text(SPIRAL, encoding="utf-8")
+    with pytest.raises(camgeo.CallError, match="points of a drum of several turns are not judged; give a solid of it"):
+        camgeo.verify(path, drum.table)
 
 
 def test_options_of_discs_are_refused(drum: Flanks) -> None:

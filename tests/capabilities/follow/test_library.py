@@ -9,7 +9,7 @@ import json
 import math
 import os
 import re
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, Literal
 
 import numpy as np
 import pytest
@@ -499,7 +499,9 @@ TWO_ROLLERS: dict[str, Any] = {
 @pytest.mark.parametrize("rotation", ["cw", "ccw"])
 @pytest.mark.parametrize("kind", ["dxf", "svg", "stl"])
 @pytest.mark.parametrize("name", MADE)
-def test_each_follower_on_each_kind_of_file(tmp_path: Path, name: str, kind: str, rotation: str) -> None:
+def test_each_follower_on_each_kind_of_file(
+    tmp_path: Path, name: str, kind: str, rotation: Literal["cw", "ccw"]
+) -> None:
     """The law, the pressure angle, and a recipe whose cam is the file's within two readings, by the judge."""
     shipped = RECIPES / f"{name}.yaml"
     recipe = camgeo.load(shipped if shipped.is_file() else TWO_ROLLERS)
