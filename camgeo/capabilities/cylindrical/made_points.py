@@ -29,6 +29,7 @@ if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
 
     from camgeo.capabilities.cylindrical.design import DrumDesign
+    from camgeo.capabilities.cylindrical.drum_recipe import DrumRecipe
     from camgeo.common.clock import Clock
     from camgeo.output.extension import FileCall
     from kin.cylindrical.intent import DrumIntent
@@ -67,6 +68,15 @@ class _Options:
     out: str | None
 
 
+def demand_one_turn(recipe: DrumRecipe, call: FileCall) -> None:
+    """Raise CallError for points of a drum whose motion takes several turns."""
+    if recipe.turns > 1:
+        names = ", ".join(escaped(str(path)) for path in call.paths)
+        raise CallError(
+            f"{names}: points of a drum of several turns are not judged; give a solid of it, as a scan in STL"
+        )
+
+
 def judge(design: DrumDesign, call: FileCall, clock: Clock) -> Results:
     """Checks and the section `made` of a report on points of a drum's flanks.
 
@@ -75,10 +85,6 @@ def judge(design: DrumDesign, call: FileCall, clock: Clock) -> Results:
     """
     recipe, options = design.recipe, _options(design, call.options)
     names = ", ".join(escaped(str(path)) for path in call.paths)
-    if recipe.turns > 1:
-        raise CallError(
-            f"{names}: points of a drum of several turns are not judged; give a solid of it, as a scan in STL"
-        )
     if recipe.undercut == "shorten" and any(design.tips.values()):
         raise CallError(f"{names}: points of a drum whose undercut is cut off are not judged; give undercut: refuse")
     places, flanks, where = [], [], []

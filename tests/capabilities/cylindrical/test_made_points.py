@@ -302,6 +302,7 @@ def centres(ball: float, off: float, rho: float = 44.0) -> list[str]:
     return ["x_mm,y_mm,z_mm,flank", *rows]
 
 
+@pytest.mark.costly("points of whole flanks are found from rollers at all angles, five times")
 def test_centres_of_a_ball(drum: Flanks) -> None:
     """A ball of 3 mm touches metal that is 5 um too much; the points are 3.005 mm off without its radius."""
     path = drum.folder / "ball.csv"
