@@ -68,6 +68,7 @@ def test_an_arm_swings(wedge: str, capsys: pytest.CaptureFixture[str]) -> None:
     [
         (("--linear", "9"), "linear takes two inputs in mm"),
         (("--linear", "0,9"), "give --roller with a radius"),
+        (("--linear", "0,9", "--roller", "3", "--width", "5"), "leave the other options out"),
         (("--linear", "0,9", "--roller", "3", "--page", "a.html"), "no page is made of a plate"),
         (("--linear", "0,9", "--roller", "3", "--lean", "89"), "a stem leans by up to 80 degrees"),
         (("--linear", "0,999", "--roller", "3"), "the follower touches nothing at input"),
