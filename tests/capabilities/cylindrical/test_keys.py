@@ -28,6 +28,7 @@ from capabilities.cylindrical.made_drums import (
 import camgeo
 from camgeo.capabilities.cylindrical.checks_of import design_checks, walls
 from camgeo.capabilities.cylindrical.figures import figures_of
+from camgeo.capabilities.cylindrical.flank import Flank
 from camgeo.recipe.recipe import load_text
 from camgeo.recipe.starter import starter
 from camgeo.schema.errors import RecipeErrors
@@ -164,6 +165,7 @@ def test_a_fault_names_its_remedy(text: str, change: tuple[str, str], wanted: st
 
 
 ON_ARM = ("radius: 12", "radius: 12, arm: {length: 50, offset: 49.5, pivot: 32}")
+BESIDE_A_RADIUS = ("radius: 12", "radius: 12, offset: -4")
 
 
 @pytest.mark.slow
@@ -174,8 +176,9 @@ ON_ARM = ("radius: 12", "radius: 12, arm: {length: 50, offset: 49.5, pivot: 32}"
         (ON_ARM, ["radius", "depth"]),
         # a shallower groove has a cone nearer the blank, and thinner
         (("radius: 12", "radius: 12, taper: axis"), ["radius"]),
+        (BESIDE_A_RADIUS, ["radius", "depth"]),
     ],
-    ids=["cylinder", "arm", "cone"],
+    ids=["cylinder", "arm", "cone", "beside a radius"],
 )
 def test_remedies_of_an_undercut_hold(follower: tuple[str, str], sharp: list[str]) -> None:
     """A smaller roller, a shallower groove and a shortened contact each give a drum; a bit less of either does not."""
@@ -190,6 +193,19 @@ def test_remedies_of_an_undercut_hold(follower: tuple[str, str], sharp: list[str
             with pytest.raises(RecipeErrors):
                 design_of(changed(text, (old, f"{key}: {1.003 * float(found[key])}")))
     design_of(changed(text, ("refuse", "shorten")))
+
+
+@pytest.mark.parametrize("follower", [ON_ARM, BESIDE_A_RADIUS], ids=["arm", "beside a radius"])
+def test_an_undercut_is_told_soon(follower: tuple[str, str], monkeypatch: pytest.MonkeyPatch) -> None:
+    """Where the roller touches a cylinder is sought at the ends of its line, and its size where it is too large."""
+    sought, looked = [], []
+    reached, regularity = Flank.reached, Flank.regularity
+    monkeypatch.setattr(Flank, "reached", lambda *given: sought.append(1) or reached(*given))
+    monkeypatch.setattr(Flank, "regularity", lambda *given: looked.append(given[2].size) or regularity(*given))
+    with pytest.raises(RecipeErrors, match="undercut from the floor"):
+        design_of(changed(REFUSE, follower))
+    assert len(sought) < 200
+    assert sum(looked) < 4_000_000
 
 
 @pytest.mark.parametrize("word", ["barrel", "drum"])
