@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from camgeo.capabilities.cylindrical.checks import LENGTH, RIB
 from camgeo.capabilities.cylindrical.crossings import wall_between
 from camgeo.capabilities.cylindrical.development import radii
 from camgeo.capabilities.cylindrical.figures import at_angle, bears, steepest
@@ -26,7 +27,6 @@ if TYPE_CHECKING:
 STEEP = 30.0  # degrees, by rule of thumb for a follower on a straight guide
 STEEP_ARM = 45.0
 ROUNDING = 1e-9  # mm: a wall that is less by no more holds
-LENGTH, RIB = "contact-length", "rib-thickness"
 
 
 def design_checks(design: DrumDesign, figures: Sequence[Figure]) -> list[Check]:

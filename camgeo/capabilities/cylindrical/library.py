@@ -10,7 +10,8 @@ import numpy as np
 from camgeo.api.check import Check, Figure, Figures
 from camgeo.api.log import stage_reporter
 from camgeo.api.own_kind import KindDesign
-from camgeo.capabilities.cylindrical.checks_of import LENGTH, RIB, design_checks, limits_held
+from camgeo.capabilities.cylindrical.checks import LENGTH, RIB
+from camgeo.capabilities.cylindrical.checks_of import design_checks, limits_held
 from camgeo.capabilities.cylindrical.exact import designed
 from camgeo.capabilities.cylindrical.figures import figures_of
 from camgeo.capabilities.cylindrical.sheet import points_of

@@ -31,6 +31,7 @@ from camgeo.capabilities.cylindrical.figures import figures_of
 from camgeo.capabilities.cylindrical.flank import Flank
 from camgeo.recipe.recipe import load_text
 from camgeo.recipe.starter import starter
+from camgeo.report.limit_words import sign
 from camgeo.schema.errors import RecipeErrors
 
 if TYPE_CHECKING:
@@ -245,11 +246,29 @@ def test_a_drum_is_no_disc() -> None:
 
 
 def test_of_a_slip_in_the_kind_no_other_key_is_at_fault() -> None:
-    for word, instead in (("cylindricl", "did you mean cylindrical?"), ("drum", "give cylindrical")):
+    words = (("cylindricl", "did you mean cylindrical?"), ("drum", "give cylindrical"))
+    for word, instead in (*words, ("barel", "give cylindrical"), ("drums", "give cylindrical")):
         with pytest.raises(RecipeErrors) as told:
             recipe_of(changed(GROOVE, ("kind: cylindrical", f"kind: {word}")))
         (fault,) = told.value.errors
         assert f"cam.kind: not one of the choices, given {word!r}; {instead}" in str(fault)
+
+
+def test_of_a_kind_that_there_is_not_no_other_key_is_at_fault() -> None:
+    with pytest.raises(RecipeErrors) as told:
+        load_text(changed(GROOVE, ("kind: cylindrical", "kind: quark")), "drum.yaml")
+    (fault,) = told.value.errors
+    assert (fault.path, fault.problem, fault.value) == ("cam.kind", "not one of the choices", "'quark'")
+
+
+def test_a_length_of_0_fails() -> None:
+    """What is shown as needed is more than 0, as a line of contact, or a rib, of no length is none."""
+    for name in ("contact-length", "rib-thickness"):
+        for limit, shown in ((0.0, ">"), (2.0, ">=")):
+            assert sign({"name": name, "sense": "at_least", "limit": limit}) == shown
+    design = design_of(RIB)
+    lengths = [check for check in design_checks(design, figures_of(design)) if check.limit == 0.0]
+    assert {check.name for check in lengths} >= {"contact-length", "rib-thickness"}
 
 
 def test_walls_of_every_track() -> None:
