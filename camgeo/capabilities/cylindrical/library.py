@@ -13,7 +13,7 @@ from camgeo.api.own_kind import KindDesign
 from camgeo.capabilities.cylindrical.checks import LENGTH, RIB
 from camgeo.capabilities.cylindrical.checks_of import design_checks, limits_held
 from camgeo.capabilities.cylindrical.exact import designed
-from camgeo.capabilities.cylindrical.figures import figures_of
+from camgeo.capabilities.cylindrical.figures import CONTACT_PRESSURE, figures_of
 from camgeo.capabilities.cylindrical.sheet import points_of
 from camgeo.checks.declared import FORM_CLOSURE, LIMIT, WATERTIGHT
 from camgeo.common.arguments import numbers_of, short_repr, whole_of
@@ -119,7 +119,7 @@ def remedy(check: Entry, recipe: DrumRecipe) -> str:
         return f"cam.drive.rpm of at most {downward(turns, 5)}"
     if name in {f"{LIMIT}{force}" for force in ("contact-force", "side-thrust", "axial-thrust", "torque")}:
         return f"a load of {downward(share, 4)} percent"
-    if name == f"{LIMIT}contact-pressure":
+    if name in {f"{LIMIT}{CONTACT_PRESSURE}", f"{LIMIT}{CONTACT_PRESSURE}-middle"}:
         return f"a load of {downward(1e-2 * share * share, 4)} percent"
     if name == f"{LIMIT}play":
         return (
