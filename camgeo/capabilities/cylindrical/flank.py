@@ -208,7 +208,10 @@ class Flank:
 
         It is above 0 where the cam drives a rise.
         """
-        pose = self.pose(theta, at)
+        return self.steepness(self.pose(theta, at), rho)
+
+    def steepness(self, pose: Pose, rho: Array) -> Array:
+        """Pressure angle (n,), rad, at poses and distances rho along the roller."""
         touch = self._touch(pose, rho)
         return np.asarray(np.arctan2(touch.sine * touch.w, touch.cosine * touch.w) + pose.lean)
 

@@ -14,6 +14,7 @@ from camgeo.capabilities.cylindrical.checks import LENGTH, RIB
 from camgeo.capabilities.cylindrical.checks_of import design_checks, limits_held
 from camgeo.capabilities.cylindrical.exact import designed
 from camgeo.capabilities.cylindrical.figures import CONTACT_PRESSURE, figures_of
+from camgeo.capabilities.cylindrical.gentler import gentler
 from camgeo.capabilities.cylindrical.sheet import points_of
 from camgeo.checks.declared import FORM_CLOSURE, LIMIT, WATERTIGHT
 from camgeo.common.arguments import numbers_of, short_repr, whole_of
@@ -110,7 +111,7 @@ def remedy(check: Entry, recipe: DrumRecipe) -> str:
     share = 100.0 * limit / value if value else 0.0
     if name == f"{LIMIT}{PRESSURE_ANGLE}" and check["sense"] == "at_most":
         if recipe.swings or recipe.roller.taper:
-            return "a larger drum, or a longer motion"
+            return gentler(recipe, float(np.radians(limit)))
         factor = np.tan(np.radians(value)) / np.tan(np.radians(limit))
         inner = f"{upward(recipe.roller.inner / recipe.mm * factor, 5)} {recipe.units}"
         return f"a larger drum, whose roller begins at {inner} from the axis, or a longer motion"
