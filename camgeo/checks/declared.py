@@ -370,6 +370,10 @@ CHECKS: Gathered[Checks, Declared] = Gathered(
     _CORE, CHECKING, lambda answers: {check.name: check for check in answers.checks}
 )
 """Every check but the limits of a recipe's own, by name, in the order in which they are foreseen."""
+OF_OTHERS: Gathered[Checks, Declared] = Gathered(
+    {}, CHECKING, lambda answers: {check.name: check for check in answers.others}
+)
+"""Checks of other kinds of cams, by name."""
 
 
 # --- limits -----------------------------------------------------------------------------------------------------------
@@ -399,7 +403,7 @@ def _of_figure(name: str, figure: DesignFigure) -> Declared:
 def declaration(name: str) -> Declared | None:
     """Declaration of a check or a limit by its name; None where there is none."""
     if not name.startswith(LIMIT):
-        return CHECKS.get(name)
+        return CHECKS.get(name) or OF_OTHERS.get(name)
     figure = FIGURES.get(name.removeprefix(LIMIT))
     return None if figure is None else _of_figure(name.removeprefix(LIMIT), figure)
 

@@ -23,13 +23,15 @@ if TYPE_CHECKING:
 class Checks:
     """Answers of a capability that checks something; figures are in mm and degrees.
 
-    checks  declarations of all its checks; every check that it makes is declared here
+    checks  declarations of all its checks of discs; every check that it makes of them is declared here
+    others  declarations of checks that it makes of its own kind of cam alone, as far as they differ from a plain one
     exact   checks that need no file: (recipe, exact cam, pairs of a surface and its contour)
     remedy  sentence on a change that would bring a figure of its own to a bound that it misses: (recipe, name of the
             figure, its value, the bound); empty where none is known
     """
 
     checks: Sequence[Declared] = ()
+    others: Sequence[Declared] = ()
     exact: Callable[[Recipe, ExactCam, Sequence[tuple[Surface, Curve]]], Sequence[Check]] = always(())
     remedy: Callable[[Recipe, str, float, float], str] = always("")
 

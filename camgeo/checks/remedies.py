@@ -21,6 +21,7 @@ if TYPE_CHECKING:
     from camgeo.recipe.limits import Limit
     from camgeo.recipe.recipe import Recipe
 
+WHOLE = 1e-9  # of the unit written: what would be left of a bore is none
 MORE_HARMONICS = "a higher delta.harmonics, up to 31, or the same motion as cam.law"
 
 smaller_swing: Remedy = always(SMALLER_SWING)
@@ -86,12 +87,12 @@ def smaller_bore(check: Entry, _report: Entry, recipe: Recipe) -> str:
     outline = part.outer is not None and "opening and outline: " in detail and not detail.endswith(" would do")
     if value is None or limit is None or not (part.plain or outline or lone_ring(recipe)):
         return ""
-    change = 2.0 * (limit - value)
+    change = upward(2.0 * (limit - value))
     if outline or lone_ring(recipe):
-        return f"a part.outer larger by more than {upward(change)} {check['unit']}"
-    if part.bore is None:
+        return f"a part.outer larger by more than {change} {check['unit']}"
+    if part.bore is None or not (float(change) + WHOLE) * recipe.mm < part.bore:
         return ""
-    return f"a bore smaller by more than {upward(change)} {check['unit']}" if change * recipe.mm < part.bore else ""
+    return f"a bore smaller by more than {change} {check['unit']}"
 
 
 def nearer(check: Entry, report: Entry, recipe: Recipe) -> str:

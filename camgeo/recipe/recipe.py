@@ -30,7 +30,7 @@ from camgeo.registry.formats import FORMATS
 from camgeo.registry.root import CAM, Reading
 from camgeo.schema.errors import RecipeError, RecipeErrors, nearest_word, suggestion
 from camgeo.schema.file_bytes import read_bytes
-from camgeo.schema.reader import Others, Reader
+from camgeo.schema.reader import Others, Reader, kind_of
 from camgeo.schema.readers import READERS
 from camgeo.schema.scalars import NAME_RULE, Complaint, read_name
 from camgeo.schema.yaml_source import MAX_BYTES, Mapping, Scalar, entries, keys, read_source
@@ -342,8 +342,9 @@ def root_key(source: Source) -> str:
     kind = entries(cam).get("kind") if isinstance(cam, Mapping) else None
     word = kind.text if isinstance(kind, Scalar) else ""
     own = word if word in roots.kinds() else roots.slips().get(word, CAM)
-    if own == CAM and word not in CAMS and (near := nearest_word(word, (*CAMS, *roots.kinds()))) in roots.kinds():
-        own = near
+    if own == CAM and word not in CAMS:
+        near = nearest_word(word, (*CAMS, *roots.kinds(), *roots.slips()))
+        own = near if near in roots.kinds() else roots.slips().get(near, CAM)
     return next((key for key in roots.top_keys() if key in top), own)
 
 
@@ -413,7 +414,12 @@ def name_by_stem(values: Values, reader: Reader, path: str | PathLike[str]) -> N
 
 def _read(source: Source, capabilities: tuple[str, ...]) -> tuple[Reader, Values]:
     reader = Reader(source, READERS, recipe_table(capabilities))
-    return reader, read_values(reader, capabilities)
+    values = read_values(reader, capabilities)
+    cam = entries(source.root).get(CAM) if isinstance(source.root, Mapping) else None
+    if isinstance(cam, Mapping) and "kind" in entries(cam) and not kind_of(cam, CAMS):
+        # of a kind that there is not, no other key is at fault
+        reader.errors = [error for error in reader.errors if error.path == f"{CAM}.kind"]
+    return reader, values
 
 
 def reader_of(source: Source) -> Reader:

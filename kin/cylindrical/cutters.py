@@ -46,7 +46,8 @@ END = 1e-4  # mm that a cutter's end counts deeper, so that points at its very e
 NEAR = 10.0  # times the tolerance: a pass that leaves so much more than another decides nothing
 LONGEST = 0.02  # rad of a block: Newton's method is at home within
 STEPS, CONED, HOPS = 2, 3, 60  # of Newton's method in a block, of a cone, and blocks on the way to the nearest
-MOST_POINTS = 4_000_000
+MOST_POINTS, ROOMY = 4_000_000, 1.1  # of points to begin with, and times as many where cutters are more askew
+FINER = 1.02  # of the finest tolerance: as near as it is found
 TINY = 1e-9
 ROOM = 0.01  # rad
 TILT, LEAN = 0.4, 1.6  # rad, times the root of the tolerance, mm: how much a cutter is askew on chords, to begin with
@@ -138,8 +139,9 @@ def left_on(gauge: Gauge, passes: Sequence[Pass], radius: float, tolerance: floa
     """
     cutter = _Cutter(radius, growth)
     ways = [_forwards(one) for one in _deepest(passes)]
-    smaller = max(abs(float(gauge.size(rho)) - radius) for rho in (gauge.inner, gauge.outer)) / radius > ALIKE
-    askew = _Askew(TILT * math.sqrt(tolerance), LEAN * math.sqrt(tolerance) + (SMALLER if smaller else 0.0))
+    askew = _begun(gauge, cutter, tolerance)
+    if not _is_told(_grid(gauge, cutter, askew, tolerance), MOST_POINTS):
+        return None
     while True:
         found = _left(gauge, ways, cutter, askew, tolerance)
         if found is None:
@@ -148,6 +150,35 @@ def left_on(gauge: Gauge, passes: Sequence[Pass], radius: float, tolerance: floa
         if widest.tilt <= askew.tilt and widest.lean <= askew.lean:
             return left
         askew = _Askew(max(askew.tilt, 1.5 * widest.tilt), max(askew.lean, 1.5 * widest.lean))
+
+
+def finest_on(gauge: Gauge, radius: float, growth: float = 0.0) -> float:
+    """Least tolerance, mm, to within `FINER`, to which `left_on` tells what a cutter leaves of a flank."""
+    cutter = _Cutter(radius, growth)
+
+    def told(tolerance: float) -> bool:
+        return _is_told(_grid(gauge, cutter, _begun(gauge, cutter, tolerance), tolerance), MOST_POINTS)
+
+    high = 1.0
+    while told(0.25 * high):
+        high *= 0.25
+    low = 0.25 * high
+    while high > FINER * low:
+        middle = math.sqrt(low * high)
+        low, high = (low, middle) if told(middle) else (middle, high)
+    return high
+
+
+def _begun(gauge: Gauge, cutter: _Cutter, tolerance: float) -> _Askew:
+    """How much a cutter is taken to be askew to begin with."""
+    sizes = (float(gauge.size(rho)) for rho in (gauge.inner, gauge.outer))
+    smaller = max(abs(size - cutter.radius) for size in sizes) / cutter.radius > ALIKE
+    return _Askew(TILT * math.sqrt(tolerance), LEAN * math.sqrt(tolerance) + (SMALLER if smaller else 0.0))
+
+
+def _is_told(grid: tuple[Array, Array], most: float) -> bool:
+    """Whether a grid of angles and places has so many points at most."""
+    return len(grid[0]) * len(grid[1]) <= most
 
 
 def _deepest(passes: Sequence[Pass]) -> list[Pass]:
@@ -178,7 +209,7 @@ def _left(
     The points are as near to one another as one that is `askew` asks for; None where they are too many.
     """
     theta, rho = _grid(gauge, cutter, askew, tolerance)
-    if len(theta) * len(rho) > MOST_POINTS:
+    if not _is_told((theta, rho), ROOMY * MOST_POINTS):
         return None
     points = _points(gauge, theta, rho)
     off = np.full(points.phi.shape, np.inf)

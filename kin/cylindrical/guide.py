@@ -90,6 +90,11 @@ class Slide:
         still = np.zeros_like(low)
         return (still + self.offset,) * 2, (still, still), (still + 1.0,) * 2
 
+    def beyond(self, place: tuple[Array, Array], radius: Array) -> Array:
+        """By how much points at places y and z (n,), mm, are out of the way of rollers of radii (n,); below 0: none."""
+        beyond: Array = np.abs(place[0] - self.offset) - radius
+        return beyond
+
     def touching(self, place: tuple[Array, Array], lift: Array, radius: Array, side: Side) -> Touch:
         """Rollers of radii (n,) on points at places y and z (n,), by intended lifts (n,)."""
         y, z = place
@@ -162,6 +167,11 @@ class Swing:
         across = self.sense * np.sin(first), self.sense * np.sin(last)
         aside = self.offset - self.sense * self.length * least, self.offset - self.sense * self.length * up
         return _sorted(*aside), _sorted(*across), (least, up)
+
+    def beyond(self, place: tuple[Array, Array], radius: Array) -> Array:
+        """By how much points at places y and z (n,), mm, are out of the way of rollers of radii (n,); below 0: none."""
+        beyond: Array = np.abs(np.hypot(place[0] - self.offset, place[1] - self.pivot) - self.length) - radius
+        return beyond
 
     def touching(self, place: tuple[Array, Array], lift: Array, radius: Array, side: Side) -> Touch:
         """Rollers of radii (n,) on points at places y and z (n,), by intended lifts (n,)."""

@@ -241,6 +241,13 @@ class LedGauge(Gauge):
         falling: Array = fall + along * self.growth
         return falling
 
+    def _unreached(self, theta: Array, half: Array, place: Place) -> Mask:
+        """Whether the roller reaches points nowhere in cells (n,) about angles."""
+        turn = place.phi - theta
+        beyond = self.guide.beyond((place.r * np.sin(turn), place.z), self.size(place.r * np.cos(turn)))
+        unreached: Mask = beyond > place.r * math.hypot(1.0, self.growth) * half
+        return unreached
+
     def _single(self, theta: Array, half: Array, place: Place) -> Mask:
         """Whether F of points has one peak at most in cells (n,) about angles, beside corners of the lift."""
         bends = widened(self._own_bends, float(half.max(initial=0.0)))

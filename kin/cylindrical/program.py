@@ -15,7 +15,7 @@ from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
-from kin.cylindrical.cutters import END, left_on
+from kin.cylindrical.cutters import END, finest_on, left_on
 from kin.cylindrical.gauge import gauges_of
 from kin.cylindrical.intent import Groove
 from kin.cylindrical.judge import CONTOUR, Judged, assured, motion_check
@@ -134,6 +134,13 @@ def judged_passes(
     except UnsettledError as error:
         checks.append(failed(CONTOUR, str(error), unit="mm", limit=limits.tolerance))
     return checks, flanks
+
+
+def finest_told(drum: DrumIntent, cutting: Cutting) -> float:
+    """Least tolerance, mm, to which `verify_program` tells what a cutter leaves; 0 where its path alone is judged."""
+    gauges = [gauge for gauge in gauges_of(drum) if not (drum.shortened or len(gauge.lifts.corners))]
+    wholes = [replace(gauge, outer=drum.radius) for gauge in gauges]
+    return max((finest_on(gauge, cutting.radius, cutting.growth) for gauge in wholes), default=0.0)
 
 
 # --- what is left -----------------------------------------------------------------------------------------------------

@@ -448,14 +448,21 @@ class Gauge:
             with np.errstate(invalid="ignore"):
                 bound = value + np.abs(slope) * half + 0.5 * self._curving(theta, half) * half**2
             bound += np.where(cornered, self.lever * self.lifts.jump * half, 0.0)
-            single = (half <= SMALL) | self._single(theta, half, place.take(own))
-            open_ = ~(bound <= best[own]) & np.where(cornered, half > NOTHING, ~single)
-            small = np.flatnonzero(~(bound <= best[own]) & ~open_)
+            there = place.take(own)
+            kept = ~(bound <= best[own]) & ~self._unreached(theta, half, there)
+            single = ~cornered & self._single(theta, half, there)
+            open_ = kept & np.where(cornered, half > NOTHING, ~single & (half > SMALL))
+            small = np.flatnonzero(kept & ~open_ & _highest(own, theta, half, (value, slope), single))
             reached(own[small], self._climbed(theta[small], place.take(own[small])))
+            # in the order of the angles of each point, so that cells which touch stay neighbours
             own, theta, half = own[open_], theta[open_], half[open_]
-            theta = np.concatenate([theta - 0.5 * half, theta + 0.5 * half])
-            own, half = np.tile(own, 2), np.tile(0.5 * half, 2)
+            theta = np.stack([theta - 0.5 * half, theta + 0.5 * half], axis=1).ravel()
+            own, half = np.repeat(own, 2), np.repeat(0.5 * half, 2)
         return at
+
+    def _unreached(self, theta: Array, half: Array, place: Place) -> Mask:  # noqa: ARG002 - all are within its reach
+        """Whether the roller reaches points nowhere in cells (n,) about angles."""
+        return np.zeros(len(theta), dtype=np.bool_)
 
     def _single(self, theta: Array, half: Array, place: Place) -> Mask:  # noqa: ARG002 - small cells alone do here
         """Whether F of points has one peak at most in cells (n,) about angles, beside corners of the lift."""
@@ -483,6 +490,25 @@ class Gauge:
         for corner in self.lifts.corners:
             held |= np.abs((theta - corner + 0.5 * period) % period - 0.5 * period) <= half
         return held
+
+
+def _highest(own: Indices, theta: Array, half: Array, found: tuple[Array, Array], single: Mask) -> Mask:
+    """Cells (n,) that may hold the peak of the run of cells that they are in; a cell that is not `single` is a run.
+
+    Cells are those of points `own` (n,) about angles, rising for each point, with F and its slope in `found`. In a run
+    of cells that touch, each with one peak at most and level nowhere else, F rises towards one peak: that is in the
+    cell whose middle is highest, or in the next one uphill.
+    """
+    value, slope = found
+    sound = single & np.isfinite(value)
+    joined = sound[1:] & sound[:-1] & (own[1:] == own[:-1]) & (theta[1:] - theta[:-1] < 3.0 * half[1:])
+    heads = np.flatnonzero(np.concatenate([[True], ~joined]))
+    run = np.cumsum(np.concatenate([[0], ~joined]))
+    highest: Mask = value >= np.maximum.reduceat(value, heads)[run]
+    uphill = highest.copy()
+    uphill[1:] |= joined & highest[:-1] & (slope[:-1] >= 0.0)
+    uphill[:-1] |= joined & highest[1:] & (slope[1:] <= 0.0)
+    return uphill
 
 
 def best_share(

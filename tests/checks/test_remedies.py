@@ -555,6 +555,9 @@ def test_what_a_failed_check_is_told() -> None:
         (remedies.smaller_bore, failed(None, 5.0), bored, ""),
         (remedies.smaller_bore, failed(0.1, 0.2, unit="in"), inches, "a bore smaller by more than 0.2 in"),
         (remedies.smaller_bore, failed(0.1, 0.31, unit="in"), inches, ""),
+        # rounded up it is the whole bore of 0.4 in
+        (remedies.smaller_bore, failed(0.1, 0.29999999, unit="in"), inches, ""),
+        (remedies.smaller_bore, failed(0.1, 0.2999, unit="in"), inches, "a bore smaller by more than 0.3998 in"),
         (remedies.smaller_bore, failed(2.0, 5.0), cam, ""),
         (remedies.smaller_bore, failed(2.0, 5.0), ring, ""),
         (remedies.smaller_bore, failed(2.0, 5.0), lone, "a part.outer larger by more than 6 mm"),

@@ -7,9 +7,10 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from camgeo.capabilities.cylindrical.checks import LENGTH, RIB
 from camgeo.capabilities.cylindrical.crossings import wall_between
 from camgeo.capabilities.cylindrical.development import radii
-from camgeo.capabilities.cylindrical.figures import at_angle, bears, steepest
+from camgeo.capabilities.cylindrical.figures import CONTACT_PRESSURE, at_angle, bears, steepest
 from camgeo.capabilities.cylindrical.flank import distance
 from camgeo.capabilities.cylindrical.keys import DEVELOPMENT
 from camgeo.measures.placed import Figure, figure_check, limit_checks
@@ -26,7 +27,6 @@ if TYPE_CHECKING:
 STEEP = 30.0  # degrees, by rule of thumb for a follower on a straight guide
 STEEP_ARM = 45.0
 ROUNDING = 1e-9  # mm: a wall that is less by no more holds
-LENGTH, RIB = "contact-length", "rib-thickness"
 
 
 def design_checks(design: DrumDesign, figures: Sequence[Figure]) -> list[Check]:
@@ -93,10 +93,10 @@ def remarks_on(design: DrumDesign, figures: Sequence[Figure]) -> tuple[RuleRemar
         remarks.append(RuleRemark(PRESSURE_ANGLE, steep.value, usual, "deg", sentence, steep.at))
     kept = design.motion.kept
     remarks += [] if kept is None else [RuleRemark(name, None, None, "", told) for name, told in kept.remarks]
-    pressure, bearable = known.get("contact-pressure"), bears(design)
+    pressure, bearable = known.get(CONTACT_PRESSURE, known.get(f"{CONTACT_PRESSURE}-middle")), bears(design)
     if pressure is not None and bearable is not None and pressure.value > bearable:
         sentence = f"the contact's pressure reaches {pressure.value:.4g} N/mm^2, the materials bear {bearable:.4g}"
-        remarks.append(RuleRemark("contact-pressure", pressure.value, bearable, pressure.unit, sentence, pressure.at))
+        remarks.append(RuleRemark(CONTACT_PRESSURE, pressure.value, bearable, pressure.unit, sentence, pressure.at))
     twist, track = known.get("shoe-twist"), recipe.track
     if twist is not None and twist.value > track.clearance:
         shown, unit = in_units(recipe, twist.value, "mm")

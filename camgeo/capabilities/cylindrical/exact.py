@@ -21,15 +21,20 @@ if TYPE_CHECKING:
 def designed(recipe: DrumRecipe, clock: Clock) -> DrumDesign:
     """The exact cam of a recipe; raises RecipeErrors where there is none."""
     with clock.stage("motion"):
-        try:
-            motion = recipe.motion.motion(recipe.period, "cam.motion", 1)
-            law = motion.periodic("cam.motion", "rad" if recipe.swings else "mm")
-        except IntentError as error:
-            raise recipe.error(recipe.stated(error.field), in_recipe(recipe, error.message)) from error
-        design = DrumDesign(recipe, motion, law)
+        design = moved(recipe)
     with clock.stage("undercut"):
         demand_sound(design)
     return design
+
+
+def moved(recipe: DrumRecipe) -> DrumDesign:
+    """The cam of a recipe whose motion can be made, and whose flanks are not looked at; raises RecipeErrors."""
+    try:
+        motion = recipe.motion.motion(recipe.period, "cam.motion", 1)
+        law = motion.periodic("cam.motion", "rad" if recipe.swings else "mm")
+    except IntentError as error:
+        raise recipe.error(recipe.stated(error.field), in_recipe(recipe, error.message)) from error
+    return DrumDesign(recipe, motion, law)
 
 
 def stated_motion(design: DrumDesign) -> StatedMotion:

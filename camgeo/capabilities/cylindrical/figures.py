@@ -28,6 +28,7 @@ if TYPE_CHECKING:
     from kin.numeric.arrays import Array
 
 MINUTE = 60.0
+CONTACT_PRESSURE = "contact-pressure"
 MIDDLE, OUTER = f"{PRESSURE_ANGLE}-middle", f"{PRESSURE_ANGLE}-outer"
 ALONG = 9  # places along a line of contact at which a greatest figure is sought
 RADII, PLACES = 24, 24  # of Gauss from floor to blank, and in each part of the turn, over which a volume is integrated
@@ -209,8 +210,8 @@ def at_angle(flank: Flank, phi: Array, r: float, theta: Array) -> Array:
 
 
 def _curved(design: DrumDesign) -> list[Figure]:
-    """Least radius of both bodies together across the line of contact, mm; none where a cut may leave a sharp edge."""
-    if design.recipe.shortens:
+    """Least radius of both bodies together across the line of contact, mm; none where a cut leaves a sharp edge."""
+    if any(design.tips.values()):
         return []
     worst = [design.greatest(lambda theta, name=name: _sharpest(design, name, theta)[0]) for name in design.flanks]  # type: ignore[misc]
     curvature, at = max(worst)
@@ -256,7 +257,8 @@ def _loaded(design: DrumDesign, steep: tuple[float, float]) -> list[Figure]:
     """Forces under the load, N, the torque, N m, and the pressure of the contact, N/mm^2.
 
     Force and thrust are those of a load that the steepest contact carries alone, its pressure angle and shaft angle in
-    rad; for the pressure the load is spread evenly along the line.
+    rad; for the pressure the load is spread evenly along the line. A line that a cut shortens begins at a sharp edge,
+    where no pressure is known: there is that half way along it alone.
     """
     recipe, drive = design.recipe, design.recipe.drive
     if drive.load is None:
@@ -271,21 +273,25 @@ def _loaded(design: DrumDesign, steep: tuple[float, float]) -> list[Figure]:
     if taper:
         found.append(Figure("axial-thrust", across * math.tan(taper), "N", math.degrees(place)))
     found.append(Figure("torque", 1e-3 * drive.load * rate * reach, "N m", math.degrees(at)))
-    if drive.material is None or recipe.shortens:
+    if drive.material is None:
         return found
     load, drum, roller = drive.load, drive.material, drive.roller_material or drive.material
 
-    def pressure(name: str, theta: Array) -> Array:
+    def pressure(theta: Array, name: str, along: slice) -> Array:
         length, flank = contact_length(design, name, theta), design.flanks[name]
-        rho, curvature = _along(design, name, theta), _sharpest(design, name, theta)[1]
+        rho, curvature = _along(design, name, theta)[along], _sharpest(design, name, theta)[1][along]
         force = load / np.cos([flank.pressure(theta, place) for place in rho]) / math.cos(taper)
         width = np.where(length > 0.0, length, np.inf)
         found: Array = line_pressure(force * curvature / width, np.ones_like(force), 1.0, drum, roller).max(axis=0)
         return found
 
-    each = recipe.track.carrying
-    value, at = max(design.greatest(lambda theta, name=name: pressure(name, theta)) for name in each)  # type: ignore[misc]
-    return [*found, Figure("contact-pressure", value, "N/mm^2", math.degrees(at))]
+    names = {CONTACT_PRESSURE: slice(None), f"{CONTACT_PRESSURE}-middle": slice(ALONG // 2, ALONG // 2 + 1)}
+    if any(design.tips.values()):
+        del names[CONTACT_PRESSURE]
+    for figure, along in names.items():
+        value, at = max(design.greatest(partial(pressure, name=name, along=along)) for name in recipe.track.carrying)
+        found.append(Figure(figure, value, "N/mm^2", math.degrees(at)))
+    return found
 
 
 def bears(design: DrumDesign) -> float | None:

@@ -172,6 +172,11 @@ class Flank:
         pose = self.pose(theta, at)
         return self._contact(theta, pose, self.reached(pose, r))
 
+    def radii(self, pose: Pose, rho: Array) -> Array:
+        """Radii of the cylinders (n,), mm, touched at poses and distances rho along the roller's axis, both (n,)."""
+        touch = self._touch(pose, rho)
+        return np.asarray(np.hypot(rho, pose.y - self.side * touch.radius * touch.sine))
+
     def reached(self, pose: Pose, r: Array | float) -> Array:
         """Distance along the roller's axis, mm (n,), at which the cylinder r is touched at poses; as `on` raises."""
         r = np.broadcast_to(np.asarray(r, dtype=float), pose.y.shape)
@@ -203,7 +208,10 @@ class Flank:
 
         It is above 0 where the cam drives a rise.
         """
-        pose = self.pose(theta, at)
+        return self.steepness(self.pose(theta, at), rho)
+
+    def steepness(self, pose: Pose, rho: Array) -> Array:
+        """Pressure angle (n,), rad, at poses and distances rho along the roller."""
         touch = self._touch(pose, rho)
         return np.asarray(np.arctan2(touch.sine * touch.w, touch.cosine * touch.w) + pose.lean)
 

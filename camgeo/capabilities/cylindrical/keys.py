@@ -236,6 +236,7 @@ FIGURES = {
     "axial-thrust": ("greatest force that pushes a conical roller outwards along its axis, N", Kind.FORCE),
     "torque": ("greatest torque that turns the drum against the load, N m", Kind.NUMBER),
     "contact-pressure": ("greatest pressure of the contact by Hertz, N/mm²", Kind.NUMBER),
+    "contact-pressure-middle": ("greatest pressure by Hertz half way along the line of contact, N/mm²", Kind.NUMBER),
     "mass": ("mass, kg", Kind.NUMBER),
     LEAST_WALL: ("least wall between two edges of the drum", Kind.LENGTH),
 }

@@ -10,9 +10,11 @@ import numpy as np
 from camgeo.api.check import Check, Figure, Figures
 from camgeo.api.log import stage_reporter
 from camgeo.api.own_kind import KindDesign
-from camgeo.capabilities.cylindrical.checks_of import LENGTH, RIB, design_checks, limits_held
+from camgeo.capabilities.cylindrical.checks import LENGTH, RIB
+from camgeo.capabilities.cylindrical.checks_of import design_checks, limits_held
 from camgeo.capabilities.cylindrical.exact import designed
-from camgeo.capabilities.cylindrical.figures import figures_of
+from camgeo.capabilities.cylindrical.figures import CONTACT_PRESSURE, figures_of
+from camgeo.capabilities.cylindrical.gentler import gentler
 from camgeo.capabilities.cylindrical.sheet import points_of
 from camgeo.checks.declared import FORM_CLOSURE, LIMIT, WATERTIGHT
 from camgeo.common.arguments import numbers_of, short_repr, whole_of
@@ -109,7 +111,7 @@ def remedy(check: Entry, recipe: DrumRecipe) -> str:
     share = 100.0 * limit / value if value else 0.0
     if name == f"{LIMIT}{PRESSURE_ANGLE}" and check["sense"] == "at_most":
         if recipe.swings or recipe.roller.taper:
-            return "a larger drum, or a longer motion"
+            return gentler(recipe, float(np.radians(limit)))
         factor = np.tan(np.radians(value)) / np.tan(np.radians(limit))
         inner = f"{upward(recipe.roller.inner / recipe.mm * factor, 5)} {recipe.units}"
         return f"a larger drum, whose roller begins at {inner} from the axis, or a longer motion"
@@ -118,7 +120,7 @@ def remedy(check: Entry, recipe: DrumRecipe) -> str:
         return f"cam.drive.rpm of at most {downward(turns, 5)}"
     if name in {f"{LIMIT}{force}" for force in ("contact-force", "side-thrust", "axial-thrust", "torque")}:
         return f"a load of {downward(share, 4)} percent"
-    if name == f"{LIMIT}contact-pressure":
+    if name in {f"{LIMIT}{CONTACT_PRESSURE}", f"{LIMIT}{CONTACT_PRESSURE}-middle"}:
         return f"a load of {downward(1e-2 * share * share, 4)} percent"
     if name == f"{LIMIT}play":
         return (

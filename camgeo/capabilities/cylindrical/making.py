@@ -6,8 +6,10 @@ from functools import partial
 from typing import TYPE_CHECKING
 
 from camgeo.capabilities.cylindrical.design import in_recipe
+from camgeo.capabilities.cylindrical.program import cutting_of
 from camgeo.capabilities.cylindrical.solid import drum_mesh
-from camgeo.capabilities.cylindrical.verdicts import judged_file
+from camgeo.capabilities.cylindrical.verdicts import intended, judged_file
+from camgeo.common.rounding import upward
 from camgeo.common.units import UNIT_MM
 from camgeo.files.errors import demand_package
 from camgeo.files.mesh import Item
@@ -42,6 +44,21 @@ def foresee(design: DrumDesign, request: FileRequest) -> None:
         if problem:
             raise recipe.error(recipe.field_of(request), problem, None, "give stl, 3mf or ply")
         need_kernel()
+    if request.format.program:
+        _demand_judged(design, request)
+
+
+def _demand_judged(design: DrumDesign, request: FileRequest) -> None:
+    """Raise RecipeErrors for a program whose tolerance is finer than what it leaves is judged to."""
+    from kin.cylindrical.program import finest_told
+
+    recipe = design.recipe
+    finest, tolerance = finest_told(intended(design), cutting_of(design, request)), recipe.tolerance(request)
+    if tolerance < finest:
+        where = recipe.field_of(request) if request.tolerance is not None else "export.tolerance"
+        remedy = f"give at least {upward(finest / recipe.mm, 2)} {recipe.units}"
+        problem = "what a program of this drum leaves is not judged so finely"
+        raise recipe.error(where, problem, f"{tolerance / recipe.mm:.9g} {recipe.units}", remedy)
 
 
 def make(design: DrumDesign, clock: Clock, request: FileRequest, path: Path) -> Made[DrumVerdict]:

@@ -327,6 +327,7 @@ def _check_limits(values: Values, reader: Reader) -> None:
         "off-radius": ("arm" in cam["follower"], "an arm"),
         "torque": loaded,
         "contact-pressure": ("material" in drive and regular, f"cam.drive.load and material, and {REFUSE}"),
+        "contact-pressure-middle": ("material" in drive, "cam.drive.load and material"),
         "mating-radius": (regular, REFUSE),
         "undercut-radius": (not regular, "undercut: shorten"),
         "mass": ("density" in part, "part.density"),

@@ -11,17 +11,17 @@ from camgeo.capabilities.cylindrical.crossings import lost_of
 from camgeo.capabilities.cylindrical.guide import Arm
 from camgeo.capabilities.cylindrical.patches import demand_smooth, kept_between
 from camgeo.capabilities.cylindrical.shoe import demand_led
-from camgeo.capabilities.cylindrical.undercut import CutError, tips
+from camgeo.capabilities.cylindrical.undercut import SHARP, CutError, largest_regular
 from camgeo.common.rounding import downward, upward
 from camgeo.curve.curve import CurveError
 from kin.numeric.records import replace
 
 if TYPE_CHECKING:
     from camgeo.capabilities.cylindrical.design import DrumDesign
+    from camgeo.capabilities.cylindrical.flank import Flank
     from camgeo.capabilities.cylindrical.undercut import Tip
 
 MOST_SWING = 80.0  # degrees of an arm off the plane across the drum's axis
-SHARP = 1e-3  # of a radius in a remedy, and its distance from the size at which undercut begins
 ROLLER = "cam.follower.radius"
 
 
@@ -95,22 +95,15 @@ def _outermost(design: DrumDesign) -> tuple[str, Tip]:
 def _smaller(design: DrumDesign) -> str:
     """Remedy with the largest roller, to a thousandth, that undercuts no flank; empty where none is found."""
     recipe = design.recipe
-    ends = recipe.floor, recipe.radius
 
-    def free(radius: float) -> bool:
+    def resized(radius: float) -> list[Flank]:
         roller, more = recipe.roller.resized(radius), radius - recipe.roller.radius
-        other = (replace(each, radius=each.radius + more, taper=roller.taper) for each in design.flanks.values())
-        return not any(tips(flank, *ends) for flank in other)
+        return [replace(each, radius=each.radius + more, taper=roller.taper) for each in design.flanks.values()]
 
-    low, high = 0.0, recipe.roller.radius
-    while high - low > SHARP * high:
-        middle = 0.5 * (low + high)
-        low, high = (middle, high) if free(middle) else (low, middle)
-    return (
-        f"give a roller radius of at most {downward((1.0 - SHARP) * low / recipe.mm, 4)} {recipe.units}"
-        if low > 0.0
-        else ""
-    )
+    most = largest_regular(resized, recipe.roller.radius, (recipe.floor, recipe.radius))
+    if most == 0.0:
+        return ""
+    return f"give a roller radius of at most {downward((1.0 - SHARP) * most / recipe.mm, 4)} {recipe.units}"
 
 
 def _demand_carried(design: DrumDesign) -> None:

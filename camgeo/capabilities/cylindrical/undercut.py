@@ -21,10 +21,10 @@ from kin.numeric.angles import TURN
 from kin.numeric.records import dataclass
 
 if TYPE_CHECKING:
-    from collections.abc import Sequence
+    from collections.abc import Callable, Sequence
 
     from camgeo.capabilities.cylindrical.flank import Flank, Pose
-    from kin.numeric.arrays import Array
+    from kin.numeric.arrays import Array, Mask
 
 SEEK = 2880  # shaft angles of a turn at which an undercut is sought
 DEPTHS = 33  # radii at which it is sought
@@ -32,6 +32,7 @@ HALVINGS = 50  # of a step between two of these, or of an angle, at which it beg
 ZOOMS = 8  # onto a tip, each to a 24th of the angles before
 ALONG = 400  # places on either branch of a row near its crossing
 NEWTON = 12  # steps to where a row crosses itself
+SHARP = 1e-3  # of a roller's radius, to which the largest one without an undercut is sought
 STEP = 1e-6  # rad: of a difference quotient for Newton's method, which its result does not depend on
 CELLS, PARTS, ROUNDS, MOST_OPEN = 360, 4, 11, 100_000  # of the proof that a flank is regular
 
@@ -118,19 +119,11 @@ def tips(flank: Flank, low: float, high: float) -> list[Tip]:
 
 def _reach(flank: Flank, theta: Array, low: float, high: float) -> Array:
     """Greatest radius (n,), mm, at which the flank is undercut at shaft angles (n,), up to `high`; else `low`."""
-    radii, both = np.linspace(low, high, DEPTHS), _both(flank, theta)
-    under = np.stack([_regular(flank, both, radius) < 0.0 for radius in radii.tolist()])
-    last = DEPTHS - 1 - np.argmax(under[::-1], axis=0)
-    some = under.any(axis=0)
-    reach = np.where(some, radii[last], low)
-    where = np.flatnonzero(some & (last < DEPTHS - 1))
-    a, b = radii[last[where]], radii[last[where] + 1]
-    near = [pose.at(where) for pose in both]
-    for _ in range(HALVINGS):
-        middle = 0.5 * (a + b)
-        below = _regular(flank, near, middle) < 0.0
-        a, b = np.where(below, middle, a), np.where(below, b, middle)
-    reach[where] = b
+    both = _both(flank, theta)
+    rho, outside = _zeros(flank, both, low, high)
+    some = np.flatnonzero(rho)
+    reach = np.full(theta.shape, low)
+    reach[some] = np.where(outside[some], high, flank.radii(both[1].at(some), rho[some]))
     return reach
 
 
@@ -139,24 +132,62 @@ def below(flank: Flank, low: float, high: float) -> tuple[float, float]:
 
     Nearer to the axis the flank is undercut somewhere. (0, nan) of a flank that is regular.
     """
-
-    def reach(theta: Array) -> Array:
-        both = _both(flank, theta)
-        inner, outer = (flank.reached(both[1], r) for r in (low, high))
-        share = np.linspace(0.0, 1.0, DEPTHS)[:, None]
-        rho = inner * (1.0 - share) + outer * share
-        under = _along(flank, both, rho) < 0.0
-        last = DEPTHS - 1 - np.argmax(under[::-1], axis=0)
-        places = np.arange(theta.size)
-        a, b = rho[last, places], rho[np.minimum(last + 1, DEPTHS - 1), places]
-        for _ in range(HALVINGS):
-            middle = 0.5 * (a + b)
-            less = _along(flank, both, middle) < 0.0
-            a, b = np.where(less, middle, a), np.where(less, b, middle)
-        return np.where(under.any(axis=0), b, 0.0)
-
-    greatest, at = greatest_of(reach, flank.period)
+    greatest, at = greatest_of(lambda theta: _zeros(flank, _both(flank, theta), low, high)[0], flank.period)
     return (greatest, at) if greatest else (0.0, math.nan)
+
+
+def _zeros(flank: Flank, poses: Sequence[Pose], low: float, high: float) -> tuple[Array, Mask]:
+    """Greatest distance along the roller (n,), mm, at which D is 0 at poses (n,) between radii; 0 without undercut.
+
+    The mask (n,) says where the flank is undercut out to the radius `high`.
+    """
+    rho, under = _seen(flank, poses, low, high)
+    last = DEPTHS - 1 - np.argmax(under[::-1], axis=0)
+    some = under.any(axis=0)
+    found = np.where(some, rho[last, np.arange(some.size)], 0.0)
+    where = np.flatnonzero(some & (last < DEPTHS - 1))
+    a, b = rho[last[where], where], rho[last[where] + 1, where]
+    near = [pose.at(where) for pose in poses]
+    for _ in range(HALVINGS):
+        middle = 0.5 * (a + b)
+        less = _along(flank, near, middle) < 0.0
+        a, b = np.where(less, middle, a), np.where(less, b, middle)
+    found[where] = b
+    return found, some & (last == DEPTHS - 1)
+
+
+def _seen(flank: Flank, poses: Sequence[Pose], low: float, high: float) -> tuple[Array, Mask]:
+    """Distances along the roller (DEPTHS, n), mm, at poses (n,) between radii, and whether the flank is undercut."""
+    inner, outer = (flank.reached(poses[-1], r) for r in (low, high))
+    share = np.linspace(0.0, 1.0, DEPTHS)[:, None]
+    rho = inner * (1.0 - share) + outer * share
+    return rho, _along(flank, poses, rho) < 0.0
+
+
+def largest_regular(resized: Callable[[float], Sequence[Flank]], most: float, ends: tuple[float, float]) -> float:
+    """Largest roller, mm, to a share of `SHARP`, of which no flank is undercut between radii; 0 where none is found.
+
+    `resized` gives the flanks of a roller; those of the radius `most`, mm, are undercut. Where the axis of the roller
+    goes does not depend on its size, so it is sought where that one undercuts, and the one found is looked at all over.
+    """
+    whole = [_both(flank, parts_between(breaks_of(flank), SEEK)) for flank in resized(most)]
+    near = [
+        [pose.at(np.flatnonzero(_seen(flank, poses, *ends)[1].any(axis=0))) for pose in poses]
+        for flank, poses in zip(resized(most), whole, strict=True)
+    ]
+
+    def free(radius: float, seen: Sequence[Sequence[Pose]]) -> bool:
+        flanks = resized(radius)
+        return not any(_seen(flank, poses, *ends)[1].any() for flank, poses in zip(flanks, seen, strict=True))
+
+    for seen in (near, whole):
+        low, high = 0.0, most
+        while high - low > SHARP * high:
+            middle = 0.5 * (low + high)
+            low, high = (middle, high) if free(middle, seen) else (low, middle)
+        if low == 0.0 or free(low, whole):
+            return low
+    return 0.0
 
 
 def demand_regular(flank: Flank, low: float, high: float) -> None:

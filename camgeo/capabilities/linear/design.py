@@ -39,7 +39,7 @@ LEVEL = 1e-9  # slope of a flank at its end below which it is level
 ROOM = (
     0.25  # of the roller's radius: half circles end a groove so much farther out, to leave the overrun whole in files
 )
-SEEK = 512  # parts of a period among which the flank's place at an edge is sought
+SEEK = 512  # parts of a period among which the place of the flank at an edge, or where it is lowest, is sought
 
 
 @dataclass(frozen=True, eq=False)
@@ -328,13 +328,15 @@ def designed(recipe: LinearRecipe, clock: Clock) -> LinearDesign:
         _demand_crank(design)
     with clock.stage("undercut"):
         try:
-            demand_graph(design.path)
+            _demand_graph(design)
             for name, flank in design.flanks.items():
                 _demand_sound(design, name, flank)
         except CurveError as error:
             raise design.error("cam", f"undercut can be neither proved nor excluded: {error}") from error
         except FlankError as error:
-            raise design.error("cam", f"{error}, at {_at(error.at)}", "give a smaller roller") from error
+            remedy = f"give a smaller radius of the {recipe.follower.kind}"
+            raise design.error("cam", f"{error}, at {_at(error.at)}", remedy) from error
+    _demand_metal(design)
     with clock.stage("profile"):
         _ = design.outline if recipe.groove is None else design.groove  # raises where its ends cannot be made
     return design
@@ -441,6 +443,44 @@ def _demand_sound(design: LinearDesign, name: str, flank: Flank) -> None:
     if flank.sense > 0 and recipe.groove is None:
         remedies.append("let what is lost be cut off: undercut: trim")
     raise design.error("cam.follower.radius", problem, ", or ".join(remedies))
+
+
+def _demand_metal(design: LinearDesign) -> None:
+    """Raise RecipeErrors where what stands under the contour is no higher than files may be off."""
+    recipe, flank = design.recipe, design.lower
+    within = max([recipe.export.tolerance, *(each.tolerance or 0.0 for each in recipe.export.files)])
+    looks = np.linspace(0.0, design.total, SEEK + 1)
+    least = float(flank.shape.sample(looks).point[:, 1].min())
+    if least > within:
+        return
+    mm, units = recipe.mm, recipe.units
+    problem = (
+        f"the plate is {least / mm:.4g} {units} high where its contour is lowest, and the tolerance {within / mm:.4g}"
+    )
+    more = upward((recipe.base + 2.0 * within - least) / mm, 4)
+    raise design.error("cam.base", problem, f"give at least {more} {units}")
+
+
+def _demand_graph(design: LinearDesign) -> None:
+    """Raise RecipeErrors where the path of what an arm leads meets itself, with the travel that serves."""
+
+    def meets_itself(path: CentrePath) -> FlankError | None:
+        try:
+            demand_graph(path)
+        except FlankError as error:
+            return error
+        return None
+
+    error = meets_itself(design.path)
+    if error is None:
+        return
+    recipe = design.recipe
+    longer = least_factor(lambda by: meets_itself(_with_travel(recipe, by).path) is None)
+    remedy = "give a longer arm, or less swing"
+    if longer is not None and recipe.steepest is None:
+        total = upward(longer * design.total / recipe.mm, 4)
+        remedy = f"lengthen the motion {upward(longer, 4)} times, to {total} {recipe.units}"
+    raise design.error("cam", f"{error}, at {_at(error.at)}", remedy) from error
 
 
 def _longer(design: LinearDesign, flank: Flank) -> float | None:

@@ -156,7 +156,7 @@ def slopes(path: CentrePath) -> tuple[Extreme, Extreme]:
 
 
 def demand_graph(path: CentrePath) -> None:
-    """Raise FlankError where the path of a roller on an arm turns by half a turn or more: flanks may meet then."""
+    """Raise FlankError where the path of what an arm leads turns by half a turn or more: flanks may meet then."""
     guide = path.guide
     if not isinstance(guide, Arm):
         return
@@ -171,7 +171,7 @@ def demand_graph(path: CentrePath) -> None:
 
     least, greatest = both(heading, stretches(path))
     if greatest.value - least.value + greatest.excess + least.excess >= math.pi:
-        raise FlankError("the path of the roller turns by half a turn and meets itself", greatest.at)
+        raise FlankError("the path of what the arm leads turns by half a turn and meets itself", greatest.at)
 
 
 # --- what undercut leaves ---------------------------------------------------------------------------------------------

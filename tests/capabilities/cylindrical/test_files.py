@@ -5,7 +5,8 @@ camgeo.capabilities.cylindrical.verdicts, camgeo.capabilities.cylindrical.develo
 camgeo.capabilities.cylindrical.tables, camgeo.capabilities.cylindrical.section,
 camgeo.capabilities.cylindrical.root, camgeo.capabilities.cylindrical.starter,
 camgeo.capabilities.cylindrical.library, camgeo.capabilities.cylindrical.design, camgeo.capabilities.cylindrical.exact,
-camgeo.capabilities.cylindrical.checks_of, camgeo.capabilities.cylindrical.drum_page, camgeo.output.own_kind,
+camgeo.capabilities.cylindrical.checks_of, camgeo.capabilities.cylindrical.checks,
+camgeo.capabilities.cylindrical.gentler, camgeo.capabilities.cylindrical.drum_page, camgeo.output.own_kind,
 camgeo.api.own_kind,
 camgeo.output.refusals, camgeo.measures.placed, camgeo.recipe.figure_bounds.
 """
@@ -14,6 +15,7 @@ from __future__ import annotations
 
 import csv
 import math
+import re
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -36,7 +38,7 @@ from support.heavy import ezdxf, manifold3d, trimesh
 
 import camgeo
 from camgeo.api.root import root_of
-from camgeo.capabilities.cylindrical.figures import volume
+from camgeo.capabilities.cylindrical.figures import figures_of, volume
 from camgeo.capabilities.cylindrical.flank import Contact, Flank
 from camgeo.capabilities.cylindrical.solid import drum_mesh
 from camgeo.cli.main import main
@@ -445,6 +447,52 @@ def test_remedies_hold(limit: str, words: str, change: tuple[str, str], tmp_path
     (failed,) = [check for check in report.checks if not check.ok]
     assert words in report.explain(failed)
     assert exported(tmp_path, changed(text, change)).ok
+
+
+@pytest.mark.parametrize(
+    ("text", "most", "ways"),
+    [
+        (ARM, 40, 2),
+        (LEADING, 30, 1),
+        (CONE, 35, 2),
+        (changed(CONE, ("taper: axis", "taper: 8")), 40, 2),
+        (RIB_ON_ARM, 40, 1),
+        (changed(TOP, ("radius: 10,", "radius: 10, taper: axis, at: 44,")), 30, 1),
+    ],
+    ids=["arm", "leading arm", "apex", "cone", "rib", "end"],
+)
+def test_a_larger_drum_and_a_longer_motion_are_gentler(text: str, most: float, ways: int, tmp_path: Path) -> None:
+    """What is told holds, and a little less does not; a motion is longer as far as rests of the turn are left."""
+    text = changed(text, ("export:", f"limits: {{pressure-angle: {{at_most: {most}}}}}\nexport:"), ("[stl]", "[csv]"))
+    report = exported(tmp_path, text)
+    told = report.explain(next(check for check in report.checks if not check.ok))
+    (radius,) = (float(found) for found in re.findall(r"a cam\.radius of at least ([\d.]+) mm", told))
+    longer = [float(found) for found in re.findall(r"or a motion ([\d.]+) times as long", told)]
+    assert len(longer) == ways - 1
+
+    def steep(text: str) -> float:
+        return next(each.value for each in figures_of(design_of(text)) if each.name == "pressure-angle")
+
+    for share, holds in ((1.0, True), (0.995, False)):
+        more = share * (radius - float(re.search(r"^  radius: (\d+)", text, re.MULTILINE)[1]))  # type: ignore[index]
+        farther = re.sub(
+            r"(^  radius|from|at): (\d+)", lambda m, by=more: f"{m[1]}: {float(m[2]) + by!r}", text, flags=re.MULTILINE
+        )
+        assert (steep(farther) <= most) is holds
+        for by in longer:
+            over = share * by
+            slower = text.replace("over: 120", f"over: {120 * over!r}").replace(
+                "dwell: 60", f"dwell: {180 - 120 * over!r}"
+            )
+            assert (steep(slower) <= most) is holds
+
+
+def test_a_swing_that_no_drum_makes_gentle(tmp_path: Path) -> None:
+    text = changed(ARM, ("export:", "limits: {pressure-angle: {at_most: 14}}\nexport:"), ("[stl]", "[csv]"))
+    report = exported(tmp_path, text)
+    told = report.explain(next(check for check in report.checks if not check.ok))
+    assert "a swing that leaves the arm within 14 degrees" in told
+    assert "radius" not in told
 
 
 @pytest.mark.parametrize(

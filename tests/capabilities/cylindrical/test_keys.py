@@ -28,8 +28,10 @@ from capabilities.cylindrical.made_drums import (
 import camgeo
 from camgeo.capabilities.cylindrical.checks_of import design_checks, walls
 from camgeo.capabilities.cylindrical.figures import figures_of
+from camgeo.capabilities.cylindrical.flank import Flank
 from camgeo.recipe.recipe import load_text
 from camgeo.recipe.starter import starter
+from camgeo.report.limit_words import sign
 from camgeo.schema.errors import RecipeErrors
 
 if TYPE_CHECKING:
@@ -164,6 +166,7 @@ def test_a_fault_names_its_remedy(text: str, change: tuple[str, str], wanted: st
 
 
 ON_ARM = ("radius: 12", "radius: 12, arm: {length: 50, offset: 49.5, pivot: 32}")
+BESIDE_A_RADIUS = ("radius: 12", "radius: 12, offset: -4")
 
 
 @pytest.mark.slow
@@ -174,8 +177,9 @@ ON_ARM = ("radius: 12", "radius: 12, arm: {length: 50, offset: 49.5, pivot: 32}"
         (ON_ARM, ["radius", "depth"]),
         # a shallower groove has a cone nearer the blank, and thinner
         (("radius: 12", "radius: 12, taper: axis"), ["radius"]),
+        (BESIDE_A_RADIUS, ["radius", "depth"]),
     ],
-    ids=["cylinder", "arm", "cone"],
+    ids=["cylinder", "arm", "cone", "beside a radius"],
 )
 def test_remedies_of_an_undercut_hold(follower: tuple[str, str], sharp: list[str]) -> None:
     """A smaller roller, a shallower groove and a shortened contact each give a drum; a bit less of either does not."""
@@ -190,6 +194,19 @@ def test_remedies_of_an_undercut_hold(follower: tuple[str, str], sharp: list[str
             with pytest.raises(RecipeErrors):
                 design_of(changed(text, (old, f"{key}: {1.003 * float(found[key])}")))
     design_of(changed(text, ("refuse", "shorten")))
+
+
+@pytest.mark.parametrize("follower", [ON_ARM, BESIDE_A_RADIUS], ids=["arm", "beside a radius"])
+def test_an_undercut_is_told_soon(follower: tuple[str, str], monkeypatch: pytest.MonkeyPatch) -> None:
+    """Where the roller touches a cylinder is sought at the ends of its line, and its size where it is too large."""
+    sought, looked = [], []
+    reached, regularity = Flank.reached, Flank.regularity
+    monkeypatch.setattr(Flank, "reached", lambda *given: sought.append(1) or reached(*given))
+    monkeypatch.setattr(Flank, "regularity", lambda *given: looked.append(given[2].size) or regularity(*given))
+    with pytest.raises(RecipeErrors, match="undercut from the floor"):
+        design_of(changed(REFUSE, follower))
+    assert len(sought) < 200
+    assert sum(looked) < 4_000_000
 
 
 @pytest.mark.parametrize("word", ["barrel", "drum"])
@@ -229,11 +246,29 @@ def test_a_drum_is_no_disc() -> None:
 
 
 def test_of_a_slip_in_the_kind_no_other_key_is_at_fault() -> None:
-    for word, instead in (("cylindricl", "did you mean cylindrical?"), ("drum", "give cylindrical")):
+    words = (("cylindricl", "did you mean cylindrical?"), ("drum", "give cylindrical"))
+    for word, instead in (*words, ("barel", "give cylindrical"), ("drums", "give cylindrical")):
         with pytest.raises(RecipeErrors) as told:
             recipe_of(changed(GROOVE, ("kind: cylindrical", f"kind: {word}")))
         (fault,) = told.value.errors
         assert f"cam.kind: not one of the choices, given {word!r}; {instead}" in str(fault)
+
+
+def test_of_a_kind_that_there_is_not_no_other_key_is_at_fault() -> None:
+    with pytest.raises(RecipeErrors) as told:
+        load_text(changed(GROOVE, ("kind: cylindrical", "kind: quark")), "drum.yaml")
+    (fault,) = told.value.errors
+    assert (fault.path, fault.problem, fault.value) == ("cam.kind", "not one of the choices", "'quark'")
+
+
+def test_a_length_of_0_fails() -> None:
+    """What is shown as needed is more than 0, as a line of contact, or a rib, of no length is none."""
+    for name in ("contact-length", "rib-thickness"):
+        for limit, shown in ((0.0, ">"), (2.0, ">=")):
+            assert sign({"name": name, "sense": "at_least", "limit": limit}) == shown
+    design = design_of(RIB)
+    lengths = [check for check in design_checks(design, figures_of(design)) if check.limit == 0.0]
+    assert {check.name for check in lengths} >= {"contact-length", "rib-thickness"}
 
 
 def test_walls_of_every_track() -> None:

@@ -49,6 +49,8 @@ from camgeo.capabilities.cylindrical.verdicts import judged_file
 from camgeo.capabilities.cylindrical.ways import Cutter, Way, radially_off, set_beside, set_radially
 from camgeo.cli.main import main
 from camgeo.common.clock import Clock
+from camgeo.schema.errors import RecipeErrors
+from kin.cylindrical import cutters
 from kin.numeric.records import replace
 
 if TYPE_CHECKING:
@@ -606,3 +608,31 @@ def test_depths_are_as_many_as_the_tolerance_asks_for() -> None:
         counts.append(len(ways))
     assert counts == sorted(counts)
     assert counts[0] < counts[2] < 8
+
+
+@pytest.mark.costly("a program and its verdict")
+@pytest.mark.parametrize("text", [GROOVE, ARM], ids=["carriage", "arm"])
+def test_a_tolerance_that_is_not_judged(text: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """It is refused before anything is written, and the one that is told is made and judged; 4e6 points are many."""
+    monkeypatch.setattr(cutters, "MOST_POINTS", 40_000)
+    text = program(text, ("tolerance: 0.02", "tolerance: 0.001"))
+    text = text if "arm:" not in text else changed(text, ("[X, A]", "[X, Y, A]"))
+    with pytest.raises(
+        RecipeErrors, match=r"export\.tolerance: what a program of this drum leaves is not judged"
+    ) as told:
+        exported(tmp_path, text)
+    assert not (tmp_path / "out").exists()
+    (finest,) = re.findall(r"given 0\.001 mm; give at least ([\d.]+) mm$", str(told.value))
+    assert exported(tmp_path, changed(text, ("tolerance: 0.001", f"tolerance: {finest}"))).ok
+    with pytest.raises(RecipeErrors, match="is not judged so finely"):
+        exported(tmp_path, changed(text, ("tolerance: 0.001", f"tolerance: {0.9 * float(finest)}")))
+
+
+@pytest.mark.parametrize("tolerance", ["0.00001", "0.0000001"])
+def test_a_fine_tolerance_is_refused_at_once(
+    tolerance: str, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    (tmp_path / "drum.yaml").write_text(program(GROOVE, ("tolerance: 0.02", f"tolerance: {tolerance}")), "utf-8")
+    assert main(["export", str(tmp_path / "drum.yaml"), "--out", str(tmp_path / "out")]) == 2
+    assert "give at least 6.1e-05 mm" in capsys.readouterr().err
+    assert not (tmp_path / "out").exists()

@@ -38,6 +38,9 @@ from camgeo.capabilities.cylindrical.bends import bends
 from camgeo.capabilities.cylindrical.checks_of import offset_off, wrapped_off
 from camgeo.capabilities.cylindrical.figures import figures_of, rib_thickness
 from camgeo.capabilities.cylindrical.undercut import below
+from camgeo.capabilities.cylindrical.verdicts import intended
+from kin.cylindrical.frame import contact_angles, flank_points, relative_curvature
+from kin.cylindrical.gauge import gauges_of
 
 if TYPE_CHECKING:
     from camgeo.capabilities.cylindrical.flank import Flank
@@ -478,3 +481,48 @@ def test_curvature_across_the_line() -> None:
         (250, 38, "lower", 0.0971588273894),
     ):
         close(flanks[name].curvature(np.radians([float(theta)]), np.array([float(rho)]))[0], wanted)
+
+
+def test_the_pressure_of_a_line_that_a_cut_shortens() -> None:
+    """Half way along what carries, by the judge's flank: it begins where no other roller has gone deeper."""
+    driven = "undercut: shorten\n  drive: {load: 200, material: steel}"
+    design = design_of(changed(UNDERCUT, ("undercut: shorten", driven)))
+    found = {each.name: each for each in figures_of(design)}
+    assert not {"contact-pressure", "mating-radius"} & found.keys()
+    middle = found["contact-pressure-middle"]
+    theta, follower = np.radians([middle.at]), intended(design).follower
+    pressures = []
+    for gauge in gauges_of(intended(design)):
+        begin, end = follower.inner, follower.outer
+        stands = [
+            gauge.worst(flank_points(follower, theta, rho, gauge.side)).distance[0] > -1e-7 for rho in (begin, end)
+        ]
+        assert stands[1]
+        low, high = begin, end
+        while high - low > 1e-9 and not stands[0]:
+            between = 0.5 * (low + high)
+            cut = gauge.worst(flank_points(follower, theta, between, gauge.side)).distance[0] < -1e-7
+            low, high = (between, high) if cut else (low, between)
+        begin = begin if stands[0] else high
+        # the line ends where the contact leaves the blank
+        ends = [
+            rho
+            for rho in np.linspace(begin, end, 4001)
+            if np.hypot(*flank_points(follower, theta, rho, gauge.side)[0, :2]) <= 40.0
+        ]
+        rho = 0.5 * (begin + ends[-1])
+        force = 200.0 / np.cos(contact_angles(follower, theta, rho, gauge.side))[0]
+        bent = relative_curvature(follower, theta, rho, gauge.side)[0]
+        compliance = 2.0 * (1.0 - 0.3**2) / 206_000.0
+        pressures.append(math.sqrt(force * bent / (math.pi * (ends[-1] - begin) * compliance)))
+    assert middle.value == pytest.approx(max(pressures), rel=2e-3)
+
+
+def test_the_pressure_where_nothing_is_cut_though_it_might_be() -> None:
+    driven = ("  pitch_height", "  drive: {load: 200, material: steel}\n  pitch_height")
+    told = [
+        {each.name: each.value for each in figures_of(design_of(changed(text, driven)))}
+        for text in (GROOVE, changed(GROOVE, ("  pitch_height", "  undercut: shorten\n  pitch_height")))
+    ]
+    assert told[1]["contact-pressure"] == told[0]["contact-pressure"] > told[0]["contact-pressure-middle"]
+    assert told[1]["mating-radius"] == told[0]["mating-radius"]

@@ -74,6 +74,37 @@ REFUSED = [
 ]
 
 
+LOW = changed(PLATE, ("base: 32", "base: 0.001"))
+
+
+@pytest.mark.parametrize("text", [LOW, changed(GROOVE, ("base: 32", "base: 0.001"))], ids=["plate", "groove"])
+def test_a_plate_is_higher_than_its_files_may_be_off(text: str) -> None:
+    with pytest.raises(RecipeErrors) as errors:
+        design_of(text)
+    told = "cam.base: the plate is 0.001 mm high where its contour is lowest, and the tolerance 0.001; give at least "
+    assert str(errors.value).startswith(f"plate.yaml:3:9: {told}")
+    (least,) = re.search(r"give at least ([\d.]+) mm$", str(errors.value)).groups()
+    design_of(changed(text, ("base: 0.001", f"base: {least}")))
+
+
+def test_the_travel_at_which_a_knife_edge_on_an_arm_has_its_way() -> None:
+    text = changed(ON_ARM, ("kind: roller, radius: 8, arm: {length: 60", "kind: knife-edge, arm: {length: 60"))
+    text = re.sub(r"(rise|return): 24", r"\1: 60", text).replace("over: 60", "over: 6").replace("over: 50", "over: 5")
+    with pytest.raises(RecipeErrors) as errors:
+        design_of(text)
+    told = str(errors.value)
+    assert "the path of what the arm leads turns by half a turn and meets itself" in told
+    assert "roller" not in told
+    (longer,) = re.search(r"lengthen the motion ([\d.]+) times", told).groups()
+    for by, serves in ((float(longer), True), (0.99 * float(longer), False)):
+        stretched = re.sub(r"(over|dwell): (\d+)", lambda m, by=by: f"{m[1]}: {float(m[2]) * by}", text)
+        if serves:
+            design_of(stretched)
+        else:
+            with pytest.raises(RecipeErrors, match="turns by half a turn"):
+                design_of(stretched)
+
+
 @pytest.mark.parametrize(("text", "change", "wanted"), REFUSED, ids=lambda item: "" if item == PLATE else None)
 def test_a_fault_names_its_remedy(text: str, change: tuple[str, str], wanted: str | None) -> None:
     """A row without words is a neighbour that is taken."""

@@ -13,6 +13,7 @@ from capabilities.cylindrical.kin.drums import (
     LED,
     Arm,
     Drum,
+    End,
     Groove,
     Made,
     Motion,
@@ -145,6 +146,31 @@ def test_an_undercut_that_is_cut_off():
 
 
 STEPS, LIMITS = Steps(400, 5, 20, 12, 1), Limits(0.0125)
+
+
+CUT_BESIDE = replace(
+    CUT, motion=sharp(17.0), track=End("bottom", 16.0), offset=-6.88, taper=math.radians(13.3), at=33.0
+)
+CUT_ON_ARM = replace(CUT, motion=sharp(15.2 / 70.0), arm=Arm(70.0, 69.7, 34.6, 1))
+
+
+@pytest.mark.parametrize("drum", [CUT_BESIDE, CUT_ON_ARM], ids=["cone beside the axis", "arm"])
+def test_peaks_are_sought_where_the_roller_reaches_and_once_each(drum, monkeypatch):
+    chance, count = np.random.default_rng(7), 120
+    gauge, flank = gauges_of(drum.intent())[0], drum.flanks[0]
+    phi, r = chance.uniform(0.0, 2.0 * np.pi, count), chance.uniform(drum.floor, drum.radius, count)
+    z = gauge.surface(phi, r) + chance.uniform(-1.0, 0.2, count)
+    points = np.stack([r * np.cos(phi), r * np.sin(phi), z], axis=-1)
+    looked, climbed = [], []
+    risen, climbing = type(gauge)._risen, type(gauge)._climbed
+    monkeypatch.setattr(type(gauge), "_risen", lambda *given: looked.append(len(given[1])) or risen(*given))
+    monkeypatch.setattr(type(gauge), "_climbed", lambda *given: climbed.append(len(given[1])) or climbing(*given))
+    found = gauge.worst(points)
+    np.testing.assert_allclose(found.height / gauge.lever, distances(drum, points, flank)[1], rtol=0.0, atol=1e-8)
+    many = np.count_nonzero(gauge.least_bend(phi, r) <= 0.0)
+    assert many > 20
+    assert sum(looked) < 60 * many
+    assert sum(climbed) - count < 8 * many
 
 
 @pytest.fixture(scope="module")
