@@ -1,0 +1,104 @@
+"""The recipe of an indexing cam: its blank, its turret, how it is driven; lengths in mm, angles in rad."""
+
+from __future__ import annotations
+
+import math
+from typing import TYPE_CHECKING
+
+from camgeo.recipe.recipe import ShaftOrder
+from kin.numeric.angles import TURN
+from kin.numeric.records import dataclass
+
+if TYPE_CHECKING:
+    from typing import ClassVar
+
+    from camgeo.capabilities.indexing.forms import Barrel, Globoid
+    from camgeo.motions.motion import MotionSource
+    from camgeo.part.part import Part
+    from camgeo.recipe.export import FileRequest
+    from camgeo.recipe.figure_bounds import Bound
+    from camgeo.recipe.materials import Material
+
+
+@dataclass(frozen=True)
+class Roller:
+    """A cylindrical roller that bears from `inner` to `outer` along its axis, mm.
+
+    These are distances from the axis of a barrel; of a globoid from that of its turret.
+    """
+
+    radius: float
+    inner: float
+    outer: float
+
+
+@dataclass(frozen=True)
+class Drive:
+    """Turns of the cam a minute, the load on the turret, N m, and what touches; None where the recipe does not say.
+
+    `inertia`, kg m^2, is that of the turret and of all that it carries, about its own axis.
+    """
+
+    rpm: float | None = None
+    load: float | None = None
+    inertia: float | None = None
+    material: Material | None = None
+    roller_material: Material | None = None
+
+
+@dataclass(frozen=True)
+class IndexRecipe(ShaftOrder):
+    """A recipe of an indexing cam; lengths in mm, angles in rad.
+
+    `form` is that of the blank, with the place of the turret. The turret has `stops` equal `roller`s; one of them
+    stands at the angle `start` where the motion begins. The roller of the upper flank is larger by `clearance`, smaller
+    by a preload where that is below 0. The thickness of `part` is the cam's length.
+    """
+
+    root: ClassVar[str] = "indexing"
+
+    form: Barrel | Globoid
+    roller: Roller
+    stops: int
+    start: float
+    motion: MotionSource
+    part: Part
+    clearance: float = 0.0
+    drive: Drive = Drive()
+    limits: tuple[Bound, ...] = ()
+
+    __repr__ = ShaftOrder.__repr__
+
+    @property
+    def advance(self) -> float:
+        """Angle of the turret, rad, between one stop and the next: that between neighbouring rollers."""
+        return TURN / self.stops
+
+    @property
+    def mirrored(self) -> bool:
+        """Whether the cam that is made is the mirror image, y -> -y, of that which is computed."""
+        return self.rotation == "ccw"
+
+    @property
+    def sense(self) -> float:
+        """Factor of y, and of polar angles, of the cam that is made: -1 of one that is mirrored."""
+        return -1.0 if self.mirrored else 1.0
+
+    def tolerance(self, request: FileRequest) -> float:
+        """Tolerance of a requested file, mm: its own, or that of the export."""
+        return request.tolerance or self.export.tolerance
+
+    @property
+    def height(self) -> float:
+        """Length of the cam along its axis, mm."""
+        return self.form.length
+
+    @property
+    def follower_name(self) -> str:
+        """Name of the follower in reports."""
+        return f"turret of {self.stops} rollers"
+
+    @property
+    def start_degrees(self) -> float:
+        """Angle of a roller where the motion begins, degrees."""
+        return math.degrees(self.start)
