@@ -21,7 +21,7 @@ from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
-from camgeo.capabilities.indexing.forms import Number, Pose, directed
+from camgeo.capabilities.indexing.forms import Number, Pose, directed, length_of
 from camgeo.curve.curve import CurveError
 from kin.numeric.records import dataclass
 
@@ -100,7 +100,7 @@ class Flank:
     def touch(self, pose: Pose, rho: Number) -> Touch:
         """First derivatives at distances rho along the roller, of arrays or balls."""
         speed, reach = self.form.speed(pose, rho), self.side * self.radius
-        w = (speed.a**2 + speed.b**2) ** 0.5
+        w = length_of(speed.a, speed.b)
         inverse = w**-1
         sine, cosine = directed(speed.a, speed.b, inverse)
         w1, w2 = (cosine * a + sine * b for a, b in ((speed.a1, speed.b1), (speed.a2, speed.b2)))

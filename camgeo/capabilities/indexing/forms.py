@@ -48,6 +48,15 @@ def directed(a: Number, b: Number, inverse: Number) -> tuple[Number, Number]:
     return sin_cos(atan2(b, a)) if isinstance(a, Ball) else (b * inverse, a * inverse)
 
 
+def length_of(a: Number, b: Number) -> Number:
+    """Length of (a, b), of arrays or balls."""
+    square = a**2 + b**2
+    if isinstance(square, Ball):  # which rounding may have led below 0
+        low, high = square.bounds()
+        return Ball.between(np.maximum(low, 0.0), high) ** 0.5
+    return square**0.5
+
+
 class Speed(NamedTuple):
     """How an axis moves: A and B, mm, with derivatives by theta (1) and by rho (2) up to the second."""
 
@@ -162,7 +171,7 @@ class Barrel:
     def layer(self, place: Vector) -> tuple[Number, Vector]:
         """Layers of places along e_r, e_t and k, mm (n,), and the unit normals of these, towards greater w."""
         x, y, z = place
-        r = (x**2 + y**2) ** 0.5
+        r = length_of(x, y)
         inverse = r**-1
         return r, (x * inverse, y * inverse, z * 0.0)
 
@@ -302,9 +311,9 @@ class Globoid:
     def layer(self, place: Vector) -> tuple[Number, Vector]:
         """Layers of places along e_r, e_t and k, mm (n,), and the unit normals of these, towards greater w."""
         x, y, z = place
-        r = (x**2 + y**2) ** 0.5
+        r = length_of(x, y)
         inwards, up = self.distance - r, z - self.height
-        w = (inwards**2 + up**2) ** 0.5
+        w = length_of(inwards, up)
         inverse = w**-1
         cosine, turn = inwards * inverse * -1.0, r**-1
         return w, (cosine * x * turn, cosine * y * turn, up * inverse)

@@ -22,7 +22,7 @@ if TYPE_CHECKING:
     from camgeo.capabilities.indexing.flank import Flank
     from kin.numeric.arrays import Array, Mask
 
-CELLS, PARTS, ROUNDS, MOST_OPEN = 360, 4, 12, 60_000  # of the proof: of a turn, of the depth, and rounds
+CELLS, PARTS, ROUNDS, MOST_OPEN = 360, 4, 15, 60_000  # of the proof: of a turn, of the depth, and rounds
 LAYERS = 17  # in which an undercut is sought
 
 
