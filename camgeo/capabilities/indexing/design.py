@@ -7,7 +7,6 @@ from functools import cached_property
 from typing import TYPE_CHECKING
 
 from camgeo.capabilities.indexing.flank import Flank
-from camgeo.capabilities.indexing.lines import Lines
 from camgeo.part.body import bore_of
 from kin.numeric.lengths import in_unit
 from kin.numeric.records import dataclass, replace
@@ -40,15 +39,6 @@ class IndexDesign:
         sizes = {"lower": recipe.roller.radius, "upper": recipe.roller.radius + recipe.clearance}
         sides = {"lower": -1, "upper": 1}
         return {name: Flank(recipe.form, self.law, recipe.start, sizes[name], sides[name]) for name in sizes}
-
-    @cached_property
-    def lines(self) -> dict[str, Lines]:
-        """Lines of contact of the flanks, by the names of these."""
-        recipe = self.recipe
-        return {
-            name: Lines(recipe.turret, self.law, recipe.start, flank.radius, flank.side)
-            for name, flank in self.flanks.items()
-        }
 
     def resized(self, radius: float) -> IndexDesign:
         """The same cam for rollers of another radius, mm."""

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from camgeo.capabilities.indexing.engaged import Engaged
-from camgeo.capabilities.indexing.keys import DRIVING, INNER, LEAST, LENGTH, MIDDLE, MOST_ENGAGED, OUTSIDE, RIB
+from camgeo.capabilities.indexing.keys import ANY, INNER, LEAST, LENGTH, MIDDLE, MOST_ENGAGED, OUTSIDE, RIB
 from camgeo.capabilities.indexing.tracks import removed, rib_thickness
 from camgeo.curve.extremes import both
 from camgeo.measures.hertz import bearable, line_pressure
@@ -29,7 +29,7 @@ if TYPE_CHECKING:
     Figured = Callable[[Rows], Array]
 
 MINUTE = 60.0
-SEEK, ZOOMS, ABOUT = 720, 6, 33  # places of a turn at which a figure is sought, and about the greatest one, so often
+SEEK, ZOOMS, ABOUT = 720, 4, 25  # places of a turn at which a figure is sought, and about the greatest one, so often
 LAYERS = 12  # of Gauss between floor and blank, over which a volume is integrated
 BEYOND = 1e-9  # rad that a place of a figure lies beside a break
 
@@ -41,7 +41,7 @@ def figures_of(design: IndexDesign) -> list[Figure]:
         search.angle(name, partial(_steepest, share=share))
         for name, share in ((PRESSURE_ANGLE, (0.0, 1.0)), (MIDDLE, (0.5,)), (INNER, (0.0,)), (OUTSIDE, (1.0,)))
     ]
-    found.append(search.angle(DRIVING, _driving))
+    found.append(search.angle(ANY, _any))
     value, at = search.greatest(lambda rows: -_least(rows, lambda each: each.length.max(axis=1)))
     found.append(Figure(LENGTH, -value, "mm", at))
     for name, sign in ((LEAST, -1.0), (MOST_ENGAGED, 1.0)):
@@ -68,7 +68,7 @@ class Search:
 
     def rows(self, theta: Array) -> dict[str, Engaged]:
         """Lines of contact of both flanks at shaft angles (n,), rad."""
-        return {name: Engaged(self.design, name, theta) for name in self.design.lines}
+        return {name: Engaged(self.design, name, theta) for name in self.design.flanks}
 
     def greatest(self, figure: Figured) -> tuple[float, float]:
         """Greatest value of a figure of such lines, (n,), nan where there is none, and its shaft angle, degrees."""
@@ -104,21 +104,21 @@ def _most(rows: Rows, figure: Callable[[Engaged], Array]) -> Array:
 
 
 def _steepest(rows: Rows, share: tuple[float, ...]) -> Array:
-    """Greatest pressure angle (n,), rad, of all rollers at shares of the lines of contact."""
+    """Greatest pressure angle (n,), rad, of the best placed roller at shares of its line, on the worse flank."""
 
     def angle(each: Engaged) -> Array:
+        own = np.arange(each.theta.size), each.best[0]
         places = [each.ends[0] + part * each.length for part in share]
-        return np.asarray(np.max([_known(each.pressure(rho)) for rho in places], axis=0).max(axis=1))
+        return np.asarray(np.max([_known(each.pressure(rho)[own]) for rho in places], axis=0))
 
     return _most(rows, angle)
 
 
-def _driving(rows: Rows) -> Array:
-    """Pressure angle (n,), rad, in the middle of the line of the best placed roller, on the worse flank."""
+def _any(rows: Rows) -> Array:
+    """Greatest pressure angle (n,), rad, of all rollers: along a line it is greatest at an end."""
 
     def angle(each: Engaged) -> Array:
-        index, _ = each.best
-        return _known(each.pressure(each.middle)[np.arange(index.size), index])
+        return np.asarray(np.max([_known(each.pressure(rho)) for rho in each.ends], axis=0).max(axis=1))
 
     return _most(rows, angle)
 
@@ -130,10 +130,7 @@ def _engaged(rows: Rows, sign: float) -> Array:
 def _play(rows: Rows, clearance: float) -> Array:
     """Play of the turret (n,), rad: the clearance over the longest lever of the upper flank's contacts."""
     each = rows["upper"]
-    levers = [
-        np.where(each.bears, each.design.recipe.turret.lever(rho) * np.cos(each.at(rho).pressure), 0.0)
-        for rho in each.ends
-    ]
+    levers = [np.where(each.bears, each.lever(rho), 0.0) for rho in each.ends]
     with np.errstate(divide="ignore"):
         return np.asarray(clearance / np.max(levers, axis=0).max(axis=1))
 

@@ -36,7 +36,7 @@ LEAST_STOPS, MOST_STOPS = 2, 60
 MOST_RADII = 20  # of one development
 MOST_INERTIA = 1e6  # kg m^2
 OUTER = "outer"
-MIDDLE, INNER, OUTSIDE, DRIVING = (f"{PRESSURE_ANGLE}-{word}" for word in ("middle", "inner", "outer", "driving"))
+MIDDLE, INNER, OUTSIDE, ANY = (f"{PRESSURE_ANGLE}-{word}" for word in ("middle", "inner", "outer", "any"))
 LENGTH, RIB, LEAST, MOST_ENGAGED = "contact-length", "rib-thickness", "engaged-least", "engaged-most"
 
 BARREL = mapping(
@@ -162,11 +162,14 @@ PART = replace(
     required=True,
 )
 FIGURES = {
-    PRESSURE_ANGLE: ("greatest pressure angle of any roller within the cam, degrees", Kind.ANGLE),
-    MIDDLE: ("greatest pressure angle in the middle of a roller, degrees", Kind.ANGLE),
-    INNER: ("greatest pressure angle at the end of a roller where it bears from, degrees", Kind.ANGLE),
-    OUTSIDE: ("greatest pressure angle at the end of a roller where it bears to, degrees", Kind.ANGLE),
-    DRIVING: ("greatest pressure angle of the roller that is best placed at each shaft angle, degrees", Kind.ANGLE),
+    PRESSURE_ANGLE: (
+        "greatest pressure angle of the roller that is best placed at each shaft angle, degrees",
+        Kind.ANGLE,
+    ),
+    MIDDLE: ("greatest pressure angle in the middle of that roller's line of contact, degrees", Kind.ANGLE),
+    INNER: ("greatest pressure angle at the end of that line nearer to `from`, degrees", Kind.ANGLE),
+    OUTSIDE: ("greatest pressure angle at the end of that line nearer to `to`, degrees", Kind.ANGLE),
+    ANY: ("greatest pressure angle of any roller, of one that just leaves the cam too, degrees", Kind.ANGLE),
     LENGTH: ("least length, over the turn, of the longest line along which a flank bears on a roller", Kind.LENGTH),
     LEAST: ("least number of rollers that a flank bears on at once", Kind.NUMBER),
     MOST_ENGAGED: ("greatest number of rollers that a flank bears on at once", Kind.NUMBER),

@@ -18,7 +18,6 @@ if TYPE_CHECKING:
     from kin.numeric.arrays import Array
 
 
-
 @dataclass(frozen=True, eq=False)
 class IndexLaw:
     """S, rad, over the shaft angle, rad, any real number: S(theta + 2 pi) = S(theta) + `advance`.

@@ -39,6 +39,7 @@ NOT_YET = {
 """Keys of what is not made, each with what is."""
 FORMATS_NOT_YET = ("svg", "step", "gcode")
 NOTHING = 1e-9  # mm: a length below it is none
+APART = 0.8  # of the distance in a globoid's throat from a roller's axis to the next one, that a roller may fill
 STEEPEST_END = math.sin(math.radians(80.0))  # of a globoid's end face, seen from the turret's axis
 
 
@@ -215,7 +216,7 @@ def _check_roller(values: Values, reader: Reader) -> None:
     if barrel:
         room = turret["radius"] * math.sin(half)
     else:
-        room = begins * math.tan(half) if turret["stops"] > 2 else math.inf
+        room = min(begins * math.sin(half), APART * blank * math.sin(min(2.0 * half, 0.5 * math.pi)))
     if not turret["roller"] < room:
         problem = "neighbouring rollers of the turret touch one another"
         remedy = f"give less than {_less(room, reader)}, or fewer stops"

@@ -36,7 +36,7 @@ def demand_room(design: IndexDesign) -> None:
 
 def demand_sound(design: IndexDesign) -> None:
     """Raise RecipeErrors for a flank that is undercut, and where two rollers leave no rib between them."""
-    for name in design.lines:
+    for name in design.flanks:
         try:
             least, at, layer = _least_regular(design, name)
         except CurveError as error:
@@ -59,18 +59,18 @@ def _least_regular(design: IndexDesign, name: str) -> tuple[float, float, float]
     """Least D within the cam, mm, of a flank, its shaft angle, rad, and its layer, mm."""
     found = []
     for w in np.linspace(*design.recipe.layers, LAYERS).tolist():
-        rows = track(design, name, w)
-        low, high = design.recipe.turret.ends(w, design.recipe.length)
+        theta, rows = track(design, name, w)
+        low, high = design.recipe.form.ends(w)
         inside = np.flatnonzero((rows.h > low) & (rows.h < high))
         if inside.size:
             i = inside[np.argmin(rows.regular[inside])]
-            found.append((float(rows.regular[i]), float(rows.theta[i]), w))
+            found.append((float(rows.regular[i]), float(theta[i]), w))
     return min(found, default=(math.inf, 0.0, 0.0))
 
 
 def _all_regular(design: IndexDesign) -> bool:
     try:
-        return all(_least_regular(design, name)[0] > 0.0 for name in design.lines)
+        return all(_least_regular(design, name)[0] > 0.0 for name in design.flanks)
     except CurveError:
         return False
 
@@ -83,4 +83,6 @@ def _smaller(design: IndexDesign, sound: Callable[[IndexDesign], bool]) -> str:
         low, high = (middle, high) if sound(design.resized(middle)) else (low, middle)
     if not low > 0.0:
         return ""
-    return f"give a roller radius of at most {downward((1.0 - SHARP) * low / design.recipe.mm, 4)} {design.recipe.units}"
+    return (
+        f"give a roller radius of at most {downward((1.0 - SHARP) * low / design.recipe.mm, 4)} {design.recipe.units}"
+    )

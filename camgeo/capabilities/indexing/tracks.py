@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, NamedTuple
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -10,18 +10,10 @@ from kin.numeric.angles import TURN
 
 if TYPE_CHECKING:
     from camgeo.capabilities.indexing.design import IndexDesign
+    from camgeo.capabilities.indexing.flank import Contact
     from kin.numeric.arrays import Array
 
 STEPS = 1440  # places of a turn at which a track is known
-
-
-class Track(NamedTuple):
-    """A flank in a layer: shaft angles, polar angles, rad, heights h, mm or rad, and D, mm; (n,) each."""
-
-    theta: Array
-    phi: Array
-    h: Array
-    regular: Array
 
 
 def angles(design: IndexDesign) -> Array:
@@ -36,12 +28,13 @@ def angles(design: IndexDesign) -> Array:
     return theta[near[0] : near[-1] + 1]
 
 
-def track(design: IndexDesign, name: str, w: float) -> Track:
-    """A flank in a layer, mm; raises CurveError where a roller does not touch it at one place."""
+def track(design: IndexDesign, name: str, w: float) -> tuple[Array, Contact]:
+    """Shaft angles (n,), rad, and contacts of a flank in a layer, mm.
+
+    Raises CurveError where a roller does not touch the layer.
+    """
     theta = angles(design)
-    line = design.lines[name].on(theta, w)
-    beside, _, h = line.place
-    return Track(theta, theta + beside, h, line.regular)
+    return theta, design.flanks[name].on(theta, w)
 
 
 def rib_thickness(design: IndexDesign) -> tuple[float, float]:
@@ -51,27 +44,27 @@ def rib_thickness(design: IndexDesign) -> tuple[float, float]:
     """
     recipe, found = design.recipe, []
     for w in np.linspace(*recipe.layers, 3).tolist():
-        lower, upper = track(design, "lower", w), track(design, "upper", w)
-        low, high = recipe.turret.ends(w, recipe.length)
+        (_, lower), (theta, upper) = track(design, "lower", w), track(design, "upper", w)
+        low, high = recipe.form.ends(w)
         phi = upper.phi + TURN  # where the next roller comes after
         inside = (phi >= lower.phi[0]) & (phi <= lower.phi[-1])
         above = np.interp(phi[inside], lower.phi, lower.h)
         between = (above > low) & (upper.h[inside] < high)
-        thick = recipe.turret.thickness(w, above - upper.h[inside])[between]
+        thick = recipe.form.unit(w) * (above - upper.h[inside])[between]
         if thick.size:
             i = int(np.argmin(thick))
-            found.append((float(thick[i]), float(upper.theta[inside][between][i])))
+            found.append((float(thick[i]), float(theta[inside][between][i])))
     return min(found, default=(np.inf, 0.0))
 
 
 def removed(design: IndexDesign, w: float) -> float:
     """Area, mm^2, that all rollers together take out of a layer, mm."""
     turret = design.recipe.turret
-    ends = np.array(turret.ends(w, design.recipe.length))
+    ends = np.array(design.recipe.form.ends(w))
     base, most = turret.across(np.full(2, w), ends)
     taken, last = {}, {}
-    for name in design.lines:
-        rows = track(design, name, w)
+    for name in design.flanks:
+        _, rows = track(design, name, w)
         below = turret.across(np.full(rows.h.shape, w), np.clip(rows.h, *ends)) - base
         taken[name] = float(np.sum(0.5 * (below[1:] + below[:-1]) * np.diff(rows.phi)))
         last[name] = float(rows.phi[-1])

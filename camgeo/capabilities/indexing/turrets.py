@@ -1,7 +1,4 @@
-"""How a turret leads a roller's axis about its cam, with the derivatives of it, and what lies where in its cam.
-
-Vectors are in the frame (e_r, e_t, k) that turns about the cam's axis with the shaft angle theta.
-"""
+"""Turrets of both forms of indexing cams: where their rollers are in touch with the cam, and what they take out of it."""
 
 from __future__ import annotations
 
@@ -11,72 +8,56 @@ from typing import TYPE_CHECKING, ClassVar, NamedTuple
 
 import numpy as np
 
+from camgeo.curve.ring import Ring, box, disc
+from kin.numeric.angles import TURN
 from kin.numeric.records import dataclass
 
 if TYPE_CHECKING:
     from collections.abc import Callable
 
+    from camgeo.capabilities.indexing.index_recipe import Roller
     from kin.indexing.intent import Form
     from kin.numeric.arrays import Array
 
-
+ARC = 24  # chords of an arc in a drawing
+HUB = 0.6  # of the pitch radius: a turret's hub in a drawing
 LESS = 0.999  # of a greatest length, in a remedy
 
 
-class Axis(NamedTuple):
-    """Axes of rollers, the points o + rho u: o and the unit vector u (n, 3), and two derivatives by theta, mm and rad.
+class Drawn(NamedTuple):
+    """A turret before its cam, seen along the turret's axis, mm: the blank, the turret's centre, hub and rollers.
 
-    `lead` (n, 3) is the unit vector along which the turret moves a roller where it rises.
+    Hub and rollers are in the turret's own axes, which turn with its angle where `way` is 1, against it where -1.
     """
 
-    o: Array
-    o1: Array
-    o2: Array
-    u: Array
-    u1: Array
-    u2: Array
-    lead: Array
-
-
-def _vector(x: Array | float, y: Array | float, z: Array | float, like: Array) -> Array:
-    return np.stack([np.broadcast_to(part, like.shape) for part in (x, y, z)], axis=-1)
+    blank: Ring
+    centre: tuple[float, float]
+    hub: Ring
+    rollers: tuple[Ring, ...]
+    way: int
 
 
 @dataclass(frozen=True)
 class Turret(ABC):
     """A turret whose axis stands at a `height`, mm, over the cam's lower face."""
 
-    turn: ClassVar[int]  # of the normal: turn u x c' points up along it
+    word: ClassVar[str]  # its name in reports
     about: ClassVar[str]  # whose axis the layers are about
+    unrolls: ClassVar[bool]  # whether its layers are cylinders, which have developments
     height: float
 
+    @property
     @abstractmethod
-    def axis(self, rows: Array) -> Axis:
-        """Axes of rollers at values (3, n) of their angle on the turret, rad, and two derivatives by theta."""
+    def sizes(self) -> dict[str, float]:
+        """Sizes that place it, mm, by their names in reports."""
 
     @abstractmethod
-    def lever(self, rho: Array) -> Array:
-        """Distance from the turret's axis, mm, at which a force at rho, mm, along a roller works; of one shape."""
-
-    @abstractmethod
-    def place(self, points: Array) -> tuple[Array, Array]:
-        """Layer w, mm, and height h, mm or rad, of points (n, 3), mm."""
-
-    @abstractmethod
-    def outward(self, points: Array, along: Array) -> Array:
-        """Derivative (n,) of the layer w along vectors (n, 3) at points (n, 3)."""
+    def core(self, floor: float) -> float:
+        """Radius about the cam's axis, mm, of what is left within a floor where that is thinnest."""
 
     @abstractmethod
     def across(self, w: Array, h: Array) -> Array:
         """Area below a height h in a layer w by the radian of the polar angle, mm^2, up to a constant of the layer."""
-
-    @abstractmethod
-    def thickness(self, w: float, h: Array) -> Array:
-        """Length, mm, of differences h of heights in a layer w, mm."""
-
-    @abstractmethod
-    def ends(self, w: float, length: float) -> tuple[float, float]:
-        """Heights h, in a layer w, mm, of the lower face and of the upper one, `length`, mm, above it."""
 
     @abstractmethod
     def spanned(self, radius: float, blank: float, length: float) -> tuple[float, float]:
@@ -100,6 +81,10 @@ class Turret(ABC):
         """Volume, mm^3, of a blank of a layer and a length, mm."""
 
     @abstractmethod
+    def drawn(self, blank: float, length: float, roller: Roller, stops: int, sense: float) -> Drawn:
+        """Shapes to look at, of a blank, mm, and so many rollers; `sense` -1 of a cam that is mirrored."""
+
+    @abstractmethod
     def intended(self, radius: float, depth: float) -> Form:
         """The form in kin's words, of a blank of a radius with a track of a depth, mm."""
 
@@ -112,58 +97,25 @@ class BarrelTurret(Turret):
     trailing turret, -1 for a leading one: the roller stands at offset - side pitch cos psi.
     """
 
-    turn: ClassVar[int] = 1
+    word: ClassVar[str] = "barrel"
     about: ClassVar[str] = "the cam"
+    unrolls: ClassVar[bool] = True
     pitch: float
     offset: float
     side: int
 
-    def beside(self, psi: Array) -> Array:
-        """Distance (n,), mm, of a roller's axis from the cam's along e_t, at angles (n,), rad."""
-        return np.asarray(self.offset - self.side * self.pitch * np.cos(psi))
+    @property
+    def sizes(self) -> dict[str, float]:
+        """Pitch radius of the rollers, and offset."""
+        return {"pitch_radius": self.pitch, "offset": self.offset}
 
-    def axis(self, rows: Array) -> Axis:
-        """Axes parallel to e_r."""
-        psi, rate, bend = rows
-        sine, cosine, l, s = np.sin(psi), np.cos(psi), self.pitch, self.side  # noqa: E741 - as in the formulas
-        y, z = self.beside(psi), self.height + l * sine
-        y1, z1 = s * l * sine * rate, l * cosine * rate
-        y2 = s * l * (cosine * rate * rate + sine * bend)
-        z2 = l * (cosine * bend - sine * rate * rate)
-        return Axis(
-            _vector(0.0, y, z, psi),
-            _vector(-y, y1, z1, psi),
-            _vector(-2.0 * y1, y2 - y, z2, psi),
-            _vector(1.0, 0.0, 0.0, psi),
-            _vector(0.0, 1.0, 0.0, psi),
-            _vector(-1.0, 0.0, 0.0, psi),
-            _vector(0.0, s * sine, cosine, psi),
-        )
-
-    def lever(self, rho: Array) -> Array:
-        """The pitch radius."""
-        return np.full_like(rho, self.pitch)
-
-    def place(self, points: Array) -> tuple[Array, Array]:
-        """Radius about the cam's axis, and height over the lower face."""
-        return np.hypot(points[..., 0], points[..., 1]), points[..., 2]
-
-    def outward(self, points: Array, along: Array) -> Array:
-        """Derivative of the radius."""
-        found: Array = np.sum(points[..., :2] * along[..., :2], axis=-1) / np.hypot(points[..., 0], points[..., 1])
-        return found
+    def core(self, floor: float) -> float:
+        """The floor's own radius."""
+        return floor
 
     def across(self, w: Array, h: Array) -> Array:
         """Area of a cylinder."""
         return np.asarray(w * h)
-
-    def thickness(self, w: float, h: Array) -> Array:  # noqa: ARG002 - of a globoid it matters
-        """Length along the cam's axis."""
-        return h
-
-    def ends(self, w: float, length: float) -> tuple[float, float]:  # noqa: ARG002
-        """Heights of the faces."""
-        return 0.0, length
 
     def spanned(self, radius: float, blank: float, length: float) -> tuple[float, float]:  # noqa: ARG002
         """Angles at which a whole roller is beyond either face."""
@@ -190,8 +142,8 @@ class BarrelTurret(Turret):
         if not max(-ends[0], ends[1]) < steepest:  # nor where it is nan
             most = 2.0 * (self.pitch * math.sin(steepest) - radius)
             problem = "the rollers stand past the floor's edge before they leave the cam at its ends"
-            serves = f"give less than {shown(most * LESS)}, with the turret's axis in the middle of it"
-            return "part.length", problem, f"{serves}, or a larger turret.radius" if most > 0.0 else "give a smaller roller"
+            remedy = f"give less than {shown(most * LESS)}, with the turret's axis in the middle of it"
+            return "part.length", problem, remedy if most > 0.0 else "give a smaller roller"
         behind = away + self.pitch * math.cos(max(-ends[0], ends[1])) - radius
         if not behind > math.sqrt(max(blank * blank - inner * inner, 0.0)):
             problem = "the rollers meet the cam on their way back, behind the turret's axis"
@@ -201,6 +153,18 @@ class BarrelTurret(Turret):
     def whole(self, blank: float, length: float) -> float:
         """Volume of a cylinder."""
         return math.pi * blank * blank * length
+
+    def drawn(self, blank: float, length: float, roller: Roller, stops: int, sense: float) -> Drawn:
+        """The barrel as a rectangle, ends of rollers as discs."""
+        angles = TURN * np.arange(stops) / stops
+        places = self.pitch * np.column_stack([np.cos(angles), np.sin(angles)])
+        return Drawn(
+            box(-blank, 0.0, blank, length),
+            (sense * self.offset, self.height),
+            disc(0.0, 0.0, HUB * self.pitch),
+            tuple(disc(x, y, roller.radius) for x, y in places.tolist()),
+            -self.side * round(sense),
+        )
 
     def intended(self, radius: float, depth: float) -> Form:
         """Kin's barrel."""
@@ -213,54 +177,23 @@ class BarrelTurret(Turret):
 class GloboidTurret(Turret):
     """A turret with radial rollers, whose axis is square to the cam's at the distance `distance`, mm."""
 
-    turn: ClassVar[int] = -1
+    word: ClassVar[str] = "globoid"
     about: ClassVar[str] = "the turret"
+    unrolls: ClassVar[bool] = False
     distance: float
 
-    def axis(self, rows: Array) -> Axis:
-        """Rays from the turret's centre."""
-        psi, rate, bend = rows
-        sine, cosine = np.sin(psi), np.cos(psi)
-        up, down = sine * bend + cosine * rate * rate, cosine * bend - sine * rate * rate
-        c = self.distance
-        return Axis(
-            _vector(c, 0.0, self.height, psi),
-            _vector(0.0, c, 0.0, psi),
-            _vector(-c, 0.0, 0.0, psi),
-            _vector(-cosine, 0.0, sine, psi),
-            _vector(sine * rate, -cosine, cosine * rate, psi),
-            _vector(up + cosine, 2.0 * sine * rate, down, psi),
-            _vector(sine, 0.0, cosine, psi),
-        )
+    @property
+    def sizes(self) -> dict[str, float]:
+        """Distance of both axes."""
+        return {"distance": self.distance}
 
-    def lever(self, rho: Array) -> Array:
-        """The distance from the turret's axis itself."""
-        return rho
-
-    def place(self, points: Array) -> tuple[Array, Array]:
-        """Distance from the turret's centre in the plane through the cam's axis, and angle there."""
-        away, up = self.distance - np.hypot(points[..., 0], points[..., 1]), points[..., 2] - self.height
-        return np.hypot(away, up), np.arctan2(up, away)
-
-    def outward(self, points: Array, along: Array) -> Array:
-        """Derivative of that distance."""
-        r = np.hypot(points[..., 0], points[..., 1])
-        away, up = self.distance - r, points[..., 2] - self.height
-        inwards = np.sum(points[..., :2] * along[..., :2], axis=-1) / r
-        found: Array = (up * along[..., 2] - away * inwards) / np.hypot(away, up)
-        return found
+    def core(self, floor: float) -> float:
+        """What is left in the plane through both axes."""
+        return self.distance - floor
 
     def across(self, w: Array, h: Array) -> Array:
         """Area of a torus: w (C h - w sin h)."""
         return np.asarray(w * (self.distance * h - w * np.sin(h)))
-
-    def thickness(self, w: float, h: Array) -> Array:
-        """Length of the arc."""
-        return np.asarray(w * h)
-
-    def ends(self, w: float, length: float) -> tuple[float, float]:
-        """Angles at which the faces cut the torus."""
-        return math.asin(-self.height / w), math.asin((length - self.height) / w)
 
     def spanned(self, radius: float, blank: float, length: float) -> tuple[float, float]:
         """Angles at which the near side of a whole roller is beyond either face."""
@@ -288,6 +221,20 @@ class GloboidTurret(Turret):
             return math.pi * ((c * c + blank * blank) * z - z**3 / 3.0 - 2.0 * c * half)
 
         return upto(length - self.height) - upto(-self.height)
+
+    def drawn(self, blank: float, length: float, roller: Roller, stops: int, sense: float) -> Drawn:  # noqa: ARG002
+        """The globoid as its outline, rollers from the side."""
+        z = np.linspace(0.0, length, ARC + 1)
+        r = self.distance - np.sqrt(blank * blank - (z - self.height) ** 2)
+        outline = np.concatenate([np.column_stack([r, z]), np.column_stack([-r[::-1], z[::-1]])])
+        low, high, half = roller.inner, roller.outer, roller.radius
+        corners = np.array([(low, -half), (high, -half), (high, half), (low, half)])
+        rollers = []
+        for angle in (TURN * np.arange(stops) / stops).tolist():
+            c, s = math.cos(angle), math.sin(angle)
+            rollers.append(Ring.through(corners @ np.array([[c, s], [-s, c]])))
+        hub = disc(0.0, 0.0, 0.95 * roller.inner)
+        return Drawn(Ring.through(outline), (self.distance, self.height), hub, tuple(rollers), -1)
 
     def intended(self, radius: float, depth: float) -> Form:
         """Kin's globoid."""
