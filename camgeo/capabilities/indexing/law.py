@@ -72,7 +72,7 @@ class IndexLaw:
 
     @cached_property
     def breaks(self) -> Array:
-        """Angles (b,) in [0, 2 pi), rad, rising, at which a derivative may jump: knots, and 0 unless S runs on there."""
+        """Angles (b,) in [0, 2 pi), rad, rising, at which a derivative may jump; 0 is none within a dwell."""
         inner = self.turn.knots[1:-1]
         ends = self.turn.functions[0], self.turn.functions[-1]
         if all(isinstance(each, Constant) for each in ends):

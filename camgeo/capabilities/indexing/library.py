@@ -80,9 +80,9 @@ class IndexingCam(KindDesign):
     def flank(self, theta: ArrayLike, layer: float, *, upper: bool = False) -> Array:
         """Points (n, 3), mm, of the lower flank, or of the upper one, in a layer, mm.
 
-        A layer of a barrel is a cylinder about its axis, one of a globoid a torus about the turret's. Points are touched
-        by the roller that stands at the start at the shaft angle 0, at shaft angles (n,), rad; other rollers are whole
-        turns further on. They lie where the cam is made, mirrored for `rotation: ccw`. Raises CallError for a layer
+        A layer of a barrel is a cylinder about its axis, one of a globoid a torus about the turret's. At the shaft
+        angles (n,), rad, the points are touched by the roller that stands at the start at 0; the other rollers are
+        whole turns further on. The cam is as it is made, mirrored for `rotation: ccw`. Raises CallError for a layer
         outside floor and blank, and for angles at which the roller does not touch it.
         """
         recipe, (low, high) = self.recipe, self.recipe.layers

@@ -1,4 +1,4 @@
-"""Turrets of both forms of indexing cams: where their rollers are in touch with the cam, and what they take out of it."""
+"""Turrets of both forms of indexing cams: where their rollers are in touch with the cam, and what they take out."""
 
 from __future__ import annotations
 
