@@ -63,7 +63,8 @@ class Search:
         """Sample the turn, on both sides of each break."""
         self.design = design
         breaks = design.law.breaks
-        self.theta = np.sort(np.concatenate([np.arange(SEEK) * (TURN / SEEK), breaks - BEYOND, breaks + BEYOND]))
+        beside = np.mod(np.concatenate([breaks - BEYOND, breaks + BEYOND]), TURN)
+        self.theta = np.sort(np.concatenate([np.arange(SEEK) * (TURN / SEEK), beside]))
         self._turn = self.rows(self.theta)
 
     def rows(self, theta: Array) -> dict[str, Engaged]:

@@ -120,7 +120,7 @@ DRIVE = mapping(
     "drive",
     "how fast the cam turns, and what the turret carries",
     Field("rpm", Kind.NUMBER, "turns of the cam a minute", above=0, at_most=MOST_RPM),
-    Field("load", Kind.NUMBER, "torque against the turret's motion, N m", above=0, at_most=MOST),
+    Field("load", Kind.NUMBER, "torque against the turret's motion, N m", above=0, at_most=MOST, unit=Kind.MOMENT),
     Field(
         "inertia",
         Kind.NUMBER,

@@ -48,5 +48,7 @@ def _library() -> Library:
     return library
 
 
-READING = Reading(table=_table, read=_read, reader=_reader, noun="indexing cam", instead="the recipe of a disc cam")
+READING = Reading(
+    table=_table, read=_read, reader=_reader, noun="cam of kind indexing", instead="the recipe of a disc cam"
+)
 ROOT = root_of_kind(_run, _library, "indexing", "a solid or a development of the cam")

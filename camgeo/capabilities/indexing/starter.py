@@ -18,20 +18,20 @@ def _starter(title: str, task: str, form: Given, cam: Given, part: Given) -> Sta
         },
         root="indexing",
         task=task,
-        also="index indexer turret dial",
+        also="index indexer turret dial globoidal ferguson",
     )
 
 
 ANSWERS = Starters(
     starters={
         "indexing-barrel": _starter(
-            "A barrel that advances a dial of six rollers by one stop a turn.",
+            "A barrel that advances a dial of eight rollers by one stop a turn.",
             "a barrel cam that indexes a dial",
             {"barrel": {"radius": "50"}},
             {
                 "depth": "13",
-                "turret": {"stops": "6", "radius": "60", "roller": "9"},
-                "motion": "\n    - {rise: 60, over: 150, law: modified-sine}\n    - {dwell: 210}",
+                "turret": {"stops": "8", "radius": "60", "roller": "9"},
+                "motion": "\n    - {rise: 45, over: 180, law: modified-sine}\n    - {dwell: 180}",
             },
             {"length": "90", "bore": "{diameter: 25, fit: H7}"},
         ),
@@ -42,7 +42,7 @@ ANSWERS = Starters(
             {
                 "depth": "13.5",
                 "turret": {"stops": "8", "roller": "8"},
-                "motion": "\n    - {rise: 45, over: 120, law: modified-sine}\n    - {dwell: 240}",
+                "motion": "\n    - {rise: 45, over: 180, law: modified-sine}\n    - {dwell: 180}",
             },
             {"length": "60", "bore": "{diameter: 20, fit: H7}"},
         ),

@@ -195,7 +195,9 @@ def test_rollers_engaged() -> None:
     found = known(shared_design(BARREL))
     assert found["engaged-least"][0] >= 1.0
     assert found["engaged-most"][0] <= 3.0
-    many = known(design_of(changed(GLOBOID, ("stops: 8, roller: 8", "stops: 16, roller: 5"), ("rise: 45", "rise: 22.5"))))
+    many = known(
+        design_of(changed(GLOBOID, ("stops: 8, roller: 8", "stops: 16, roller: 5"), ("rise: 45", "rise: 22.5")))
+    )
     assert many["engaged-least"][0] > known(shared_design(GLOBOID))["engaged-least"][0]
 
 
