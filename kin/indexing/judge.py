@@ -40,7 +40,7 @@ if TYPE_CHECKING:
     from kin.indexing.holding import Held
     from kin.indexing.intent import Developed, IndexIntent, Limits
     from kin.law.contacts import Side
-    from kin.numeric.arrays import Array, Indices
+    from kin.numeric.arrays import Array, Indices, Mask
     from kin.read.mesh.checked import CheckedMesh
 
 WATERTIGHT, MOTION, PLAY, CONTOUR, ENDS, VOLUME = "watertight", "motion", "form-closure", "contour", "ends", "volume"
@@ -136,7 +136,10 @@ class _Judged:
                 checks.append(at_most(name, worst, tolerance, "mm", detail=detail, slack=self.slack))
 
         check(BLANK, off[BLANK], f"from a radius of {length_words(intent.form.radius)} {UNIT}")
-        check(FLOOR, off[FLOOR], f"from a depth of {length_words(intent.form.depth)} {UNIT} below the blank")
+        room = intent.form.depth - max(intent.form.depth_at(place) for place in (intent.inner, intent.outer))
+        told = f"the roller ends {length_words(abs(room), '.3g')} {UNIT} {'above it' if room > 0.0 else 'below it'}"
+        check(FLOOR, off[FLOOR], f"from a depth of {length_words(intent.form.depth)} {UNIT} below the blank; {told}")
+        checks[-1] = replace(checks[-1], ok=checks[-1].ok and room > 0.0)
         worst = math.nan if math.isnan(off[BOTTOM] + off[TOP]) else max(off[BOTTOM], off[TOP])
         check(ENDS, worst, f"from z = {length_words(0.0)} and {length_words(intent.length)} {UNIT}")
         if intent.bore is not None:
@@ -154,7 +157,7 @@ class _Judged:
             return FlankVerdict(name), None, [failed(CONTOUR, "the flank is missing", unit="mm", limit=limit)]
         edged = edges_of(rollers, body, known, which)
         asked = np.isfinite(known.distance) & (known.above == (side > 0))
-        out = proud(rollers, known, edged, np.flatnonzero(asked))
+        out = proud(rollers, known, edged, np.flatnonzero(asked & self._beside(which)))
         within = bare(rollers, body, known, which)
         check, worst = contour_check(out, within, limit, self.slack)
         count = angles_for(rollers)
@@ -166,6 +169,15 @@ class _Judged:
         motion = motion_error(holds, self._pushed(edged, np.flatnonzero(asked)))
         checks = [check, motion_check(rollers, motion, self.limits, self.slack, by_error(rollers, side))]
         return FlankVerdict(name, motion, worst, len(which)), holds, checks
+
+    def _beside(self, which: Indices) -> Mask:
+        """Corners (v,) that have to be out of what rollers sweep: of a flank, and of blank and ends above the floor."""
+        found = np.zeros(len(self.body.points), dtype=np.bool_)
+        for name in (BLANK, BOTTOM, TOP):
+            found[self.body.corners[self.faces.of(name)]] = True
+        found[self.body.corners[self.faces.of(FLOOR)]] = False
+        found[self.body.corners[which]] = True
+        return found
 
     def _pushed(self, edged: Edged, own: Indices) -> Peak:
         """How far a flank pushes the turret out of its place at most, rad, by its corners and edges."""
