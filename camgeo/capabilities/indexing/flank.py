@@ -107,7 +107,9 @@ class Flank:
         a1, a2 = ((cosine * b - sine * a) * inverse for a, b in ((speed.a1, speed.b1), (speed.a2, speed.b2)))
         turn, bend = self.form.tilt(pose)[0] - a1, w * a2 * -1.0
         along, beside = w + turn * reach, self.form.slip(pose, rho)[0] + bend * reach
-        return Touch(sine, cosine, w, w1, w2, a1, a2, turn, bend, along, beside, along + a2 * beside * reach)
+        return Touch(
+            sine, cosine, w, w1, w2, a1, a2, turn, bend, along, beside, along + a2 * beside * reach
+        )
 
     def place(self, pose: Pose, rho: Number, sine: Number, cosine: Number) -> Vector:
         """Places of contacts along e_r, e_t and k, mm, of arrays or balls."""
@@ -154,17 +156,20 @@ class Flank:
         """Distance along the roller, mm (n,), at which layers w, mm, are touched; nan where they are not."""
         w = np.broadcast_to(np.asarray(w, dtype=float), pose.sine.shape)
         rho = w.copy()
-        step = np.zeros_like(rho)
+        open_: Indices = np.arange(w.size)
         with np.errstate(all="ignore"):
             for _ in range(NEWTON):
-                touch = self.touch(pose, rho)
-                layer, outwards = self.outwards(pose, rho, touch)
-                step = (layer - w) / self.rising(touch, outwards)[1]
-                step = np.where(np.isfinite(step), np.clip(step, -0.5 * rho, 0.5 * rho), 0.5 * rho)
-                rho = rho - step
-                if not (np.abs(step) > SETTLED * w).any():
-                    return rho
-        return np.where(np.abs(step) > SETTLED * w, np.nan, rho)
+                own, part, layer_of = rho[open_], pose.of(open_), w[open_]
+                touch = self.touch(part, own)
+                layer, outwards = self.outwards(part, own, touch)
+                step = (layer - layer_of) / self.rising(touch, outwards)[1]
+                step = np.where(np.isfinite(step), np.clip(step, -0.5 * own, 0.5 * own), 0.5 * own)
+                rho[open_] = own - step
+                open_ = open_[np.abs(step) > SETTLED * layer_of]
+                if not open_.size:
+                    break
+        rho[open_] = np.nan
+        return rho
 
     def normal(self, theta: Array, rho: Array) -> Array:
         """Normals (n, 3) of the metal, outwards, at shaft angles theta and distances rho along the roller, (n,)."""

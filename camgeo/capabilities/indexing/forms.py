@@ -29,10 +29,14 @@ from kin.numeric.interval import Ball, sin_cos
 from kin.numeric.records import dataclass
 
 if TYPE_CHECKING:
-    from typing import ClassVar, Literal
+    from typing import Literal
 
-    from kin.numeric.arrays import Array
+    from kin.numeric.arrays import Array, Indices
 
+MARGIN = 0.1  # rad
+WIDEST = math.pi / 3.0  # polar angle that a triangle may span, however coarse
+LESS = 0.95  # times the span of a triangle that is too wide
+BESIDE = 2.1  # turns of the normal that count, as in `camgeo.capabilities.indexing.bends`
 Number: TypeAlias = Any
 """An array, or balls."""
 Vector: TypeAlias = tuple[Number, Number, Number]
@@ -63,6 +67,10 @@ class Pose(NamedTuple):
     second: Number
     third: Number
 
+    def of(self, index: Indices) -> Pose:
+        """The turret at some of the shaft angles."""
+        return Pose(*(part[index] for part in self))
+
     @staticmethod
     def at(rows: Number, start: float) -> Pose:
         """The turret whose roller stands at `start`, rad, where S is 0, from rows (4, n) of S, rad, or of balls."""
@@ -86,8 +94,6 @@ class Barrel:
     side: Literal[-1, 1]
     height: float
     length: float
-    inwards: ClassVar[int] = 1  # the sign of (dp/drho x dp/dtheta).n
-    outer_up: ClassVar[int] = 1  # the blank lies at greater w than the floor
 
     @property
     def blank(self) -> float:
@@ -192,6 +198,15 @@ class Barrel:
         across = self._beside(pose) - sine
         return w * w - across * across
 
+    def passing(self, radius: float) -> tuple[float, float]:
+        """Angles on the turret, rad, between which a roller of a radius, mm, may touch the cam, and a little more."""
+        low, high = (-self.height - radius) / self.pitch, (self.length - self.height + radius) / self.pitch
+        quarter = 0.5 * math.pi
+        return (
+            max(math.asin(max(low, -1.0)) - MARGIN, -quarter),
+            min(math.asin(min(high, 1.0)) + MARGIN, quarter),
+        )
+
     def meets(self, psi: Array, radius: float) -> Array:
         """Whether a roller of a radius, mm, at angles on the turret (n,), rad, is within the box about the cam (n,)."""
         y = self.offset - self.side * self.pitch * np.cos(psi)
@@ -200,14 +215,14 @@ class Barrel:
         above = np.maximum(np.maximum(z - self.length, -z), 0.0)
         return np.asarray(np.hypot(beside, above) < radius)
 
-    def bends(self, w: float) -> tuple[Array, Array]:
-        """Bounds for a layer: of |p_ij . n| and of |p_ij|, (3,) each: twice by phi, by phi and h, twice by h."""
-        return np.array([w, 0.0, 0.0]), np.array([w, 0.0, 0.0])
+    def off(self, w: float, turn: Array, h: Array) -> Array:
+        """Bound, mm (n,), of the distance from a layer of triangles that span a polar angle, rad, and a height (n,)."""
+        del h
+        return np.asarray(2.0 * w * np.sin(0.25 * np.minimum(turn, math.pi)) ** 2)
 
-    def turns(self, w: float) -> tuple[float, float]:
-        """Bounds of the turn of the layer's normal by phi and by h."""
-        del w
-        return 1.0, 0.0
+    def widest(self, w: float, tolerance: float) -> tuple[float, float]:
+        """Polar angle, rad, and height that triangles in a layer may span within a tolerance, mm."""
+        return min(4.0 * math.asin(math.sqrt(min(0.5 * tolerance / w, 0.5))), WIDEST), math.inf
 
 
 @dataclass(frozen=True)
@@ -222,8 +237,6 @@ class Globoid:
     distance: float
     height: float
     length: float
-    inwards: ClassVar[int] = -1
-    outer_up: ClassVar[int] = -1
 
     @property
     def blank(self) -> float:
@@ -337,21 +350,34 @@ class Globoid:
         more = sine * sine * ((x * x + sine * sine) ** 0.5 + x) ** -1
         return w * w - cosine * cosine + more * (inwards * 2.0 - more)
 
+    def passing(self, radius: float) -> tuple[float, float]:
+        """Angles on the turret, rad, between which a roller of a radius, mm, may touch the cam, and a little more."""
+        least = min(self.radius, self.radius + self.depth) - radius
+        low, high = -self.height / least, (self.length - self.height) / least
+        more, quarter = MARGIN + math.asin(min(radius / least, 1.0)), 0.5 * math.pi
+        return (
+            max(math.asin(max(low, -1.0)) - more, -quarter),
+            min(math.asin(min(high, 1.0)) + more, quarter),
+        )
+
     def meets(self, psi: Array, radius: float) -> Array:
         """Whether a roller at angles on the turret (n,), rad, is on the cam's side of it (n,)."""
         del radius
         return np.asarray(np.cos(psi) > 0.0)
 
-    def bends(self, w: float) -> tuple[Array, Array]:
-        """Bounds for a layer: of |p_ij . n| and of |p_ij|, (3,) each: twice by phi, by phi and h, twice by h."""
-        r = self.rim(w)
-        # both parts along the normal are of opposite sense, and each is held by itself
-        return np.array([r, 0.0, w]), np.array([r, self._steep(w), w])
+    def off(self, w: float, turn: Array, h: Array) -> Array:
+        """Bound, mm (n,), of the distance from a layer of triangles that span a polar angle, rad, and a height (n,).
 
-    def turns(self, w: float) -> tuple[float, float]:
-        """Bounds of the turn of the layer's normal by phi and by h."""
-        del w
-        return 1.0, 1.0
+        A torus is a saddle there: both parts of the second order are of opposite sense, and each is held by itself.
+        """
+        r, steep = self.rim(w), min(w, max(self.height, self.length - self.height))
+        whole = (r * turn * turn + 2.0 * steep * turn * h + w * h * h) / 8.0
+        plain = np.maximum(r * turn * turn, w * h * h) / 8.0
+        return np.asarray(plain + BESIDE * (turn + h) * whole)
 
-    def _steep(self, w: float) -> float:
-        return min(w, max(self.height, self.length - self.height))
+    def widest(self, w: float, tolerance: float) -> tuple[float, float]:
+        """Polar angle, rad, and height that triangles in a layer may span within a tolerance, mm."""
+        turn, h = (min(math.sqrt(8.0 * tolerance / size), WIDEST) for size in (self.rim(w), w))
+        while float(self.off(w, np.array(turn), np.array(h))) > tolerance:
+            turn, h = LESS * turn, LESS * h
+        return turn, h

@@ -1,0 +1,151 @@
+"""Triangles of blank and floor: a band in one layer between two lines, along both of which the polar angle rises.
+
+The points of both lines are passed in the order of the polar angle. Behind them lie triangles, before them a front:
+points from the last one of the lower line to the last one of the upper one. A new point becomes an end of the front,
+and every corner beside it that is a triangle is cut off at once. What then spans too much of the layer is divided:
+edges that no line has are halved, until each is short enough.
+"""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, NamedTuple
+
+import numpy as np
+
+from camgeo.files.errors import RegionError
+from kin.numeric.arrays import paired
+
+if TYPE_CHECKING:
+    from kin.numeric.arrays import Array, Indices
+
+CROSSED = "two lines in a layer of the cam cross"
+SHARP = 1e-2  # sine of a corner of one line below which it is cut off at the end alone
+FLAT = 1e-9  # sine of a corner that is none
+ROUNDS = 60
+
+
+class Filled(NamedTuple):
+    """Triangles (t, 3), counter-clockwise over polar angle and height, and the places of points added (k,) each.
+
+    The points of the lines are numbered first, in the order in which they were given, then those that were added.
+    """
+
+    triangles: Indices
+    phi: Array
+    h: Array
+
+
+def band(x: Array, y: Array, lower: Indices, upper: Indices) -> Indices:
+    """Triangles (t, 3) between two lines of points, numbers (n,) and (m,), which begin and end in common.
+
+    x rises along both. Raises RegionError where the lines cross.
+    """
+    along, up = x.tolist(), y.tolist()
+    low, high = lower.tolist(), upper.tolist()
+    below = set(low)
+    order = sorted(
+        [(along[k], 0, place, k) for place, k in enumerate(low[1:-1])]
+        + [(along[k], 1, place, k) for place, k in enumerate(high[1:-1])]
+    )
+    found: list[tuple[int, int, int]] = []
+    front = [low[0]]
+
+    def sine(a: int, b: int, c: int) -> float:
+        ux, uy, vx, vy = along[b] - along[a], up[b] - up[a], along[c] - along[a], up[c] - up[a]
+        size = ((ux * ux + uy * uy) * (vx * vx + vy * vy)) ** 0.5
+        return (ux * vy - uy * vx) / size if size else 0.0
+
+    def cut(least: float, *, start: bool) -> None:
+        while len(front) > 2:
+            a, b, c = (front[1], front[0], front[2]) if start else (front[-3], front[-1], front[-2])
+            alike = (a in below) == (b in below) == (c in below)
+            turn = min(sine(a, b, c), sine(b, c, a), sine(c, a, b))
+            if not turn > (least if alike else FLAT):
+                return
+            found.append((a, b, c))
+            del front[1 if start else -2]
+
+    for _, which, _, k in order:
+        if which == 0:
+            front.insert(0, k)
+        else:
+            front.append(k)
+        cut(SHARP, start=which == 0)
+    _close([*front, low[-1]], found, sine)
+    return np.array(found, dtype=np.intp).reshape(-1, 3)
+
+
+def _close(loop: list[int], found: list[tuple[int, int, int]], sine) -> None:  # type: ignore[no-untyped-def]
+    """Cut the corners of what is left, the sharpest last: a loop, clockwise, whose points a front and its end are."""
+    loop = loop[::-1]
+    while len(loop) > 2:
+        best, at = FLAT, -1
+        n = len(loop)
+        for i in range(n):
+            a, b, c = loop[i - 1], loop[i], loop[(i + 1) % n]
+            turn = min(sine(a, b, c), sine(b, c, a), sine(c, a, b))
+            if turn > best:
+                best, at = turn, i
+        if at < 0:
+            raise RegionError(CROSSED)
+        found.append((loop[at - 1], loop[at], loop[(at + 1) % n]))
+        del loop[at]
+
+
+def filled(
+    phi: Array, h: Array, lower: Indices, upper: Indices, scale: tuple[float, float], wide: tuple[float, float]
+) -> Filled:
+    """The band between two lines of points at polar angles, rad, and heights (n,); as `band` raises.
+
+    `scale` has the lengths of both units, mm. No edge but those of the lines spans more than `wide`.
+    """
+    triangles = band(phi * scale[0], h * scale[1], lower, upper)
+    if triangles.shape[0] != lower.size + upper.size - 4:
+        raise RegionError(CROSSED)
+    known = phi.size
+    for _ in range(ROUNDS):
+        start, end = triangles.ravel(), np.roll(triangles, -1, axis=1).ravel()
+        low, high = np.minimum(start, end), np.maximum(start, end)
+        key, first, back, count = np.unique(
+            paired(low, high, phi.size), return_index=True, return_inverse=True, return_counts=True
+        )
+        a, b = low[first], high[first]
+        long = (np.abs(phi[a] - phi[b]) > wide[0]) | (np.abs(h[a] - h[b]) > wide[1])
+        long &= count == 2
+        if not long.any():
+            return Filled(triangles, phi[known:], h[known:])
+        middle = np.full(key.size, -1, dtype=np.intp)
+        middle[long] = phi.size + np.arange(np.count_nonzero(long))
+        phi = np.concatenate([phi, 0.5 * (phi[a] + phi[b])[long]])
+        h = np.concatenate([h, 0.5 * (h[a] + h[b])[long]])
+        triangles = _divided(triangles, middle[back].reshape(-1, 3), phi / wide[0], h / wide[1])
+    raise RegionError("a layer of the cam is not divided finely enough")
+
+
+def _divided(triangles: Indices, middle: Indices, x: Array, y: Array) -> Indices:
+    """Triangles with the middles (t, 3) of some of their edges, -1 for none; edge k is that from corner k on."""
+    count = np.count_nonzero(middle >= 0, axis=1)
+    found = [triangles[count == 0]]
+    for number in (1, 2, 3):
+        own = np.flatnonzero(count == number)
+        if not own.size:
+            continue
+        corner, mid = triangles[own], middle[own]
+        # turned so that the first edge is halved; of two, that the third is not
+        first = np.argmax(mid >= 0, axis=1) if number != 2 else (np.argmax(mid < 0, axis=1) + 1) % 3
+        turn = (first[:, None] + np.arange(3)) % 3
+        corner, mid = np.take_along_axis(corner, turn, axis=1), np.take_along_axis(mid, turn, axis=1)
+        (a, b, c), (p, q, r) = corner.T, mid.T
+        if number == 1:
+            found += [np.column_stack([a, p, c]), np.column_stack([p, b, c])]
+        elif number == 3:
+            found += [np.column_stack(each) for each in ((a, p, r), (p, b, q), (r, q, c), (p, q, r))]
+        else:
+            found.append(np.column_stack([p, b, q]))
+            # of the rest the shorter way across
+            one = np.hypot(x[a] - x[q], y[a] - y[q]) <= np.hypot(x[p] - x[c], y[p] - y[c])
+            found += [
+                np.column_stack([a, p, np.where(one, q, c)]),
+                np.column_stack([np.where(one, a, p), q, c]),
+            ]
+    return np.concatenate(found)
