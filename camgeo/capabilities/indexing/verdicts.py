@@ -12,7 +12,6 @@ from camgeo.part.as_intent import holes_of
 from camgeo.part.body import Body
 from camgeo.recipe.export import requests
 from kin.indexing import intent
-from kin.indexing.judge import verify, verify_development
 from kin.read.formats import format_of
 
 if TYPE_CHECKING:
@@ -59,6 +58,8 @@ def judged_file(
     A drawing that the recipe does not ask for is held against the lines that the recipe's developments have, or those
     of one by default. Raises RecipeErrors for a drawing of a globoid.
     """
+    from kin.indexing.judge import verify
+
     recipe = design.recipe
     limits = intent.Limits(tolerance, recipe.verify.motion_error)
     stated = format_of(path).units
@@ -67,6 +68,8 @@ def judged_file(
         return verify(path, intended(design), limits, None if stated else units or own)
     if not recipe.turret.unrolls:
         raise recipe.error(recipe.stated("cam.globoid"), "a globoid has no development", None, "give a solid of it")
+    from kin.indexing.judge import verify_development
+
     asked = [request] if request is not None else [each for each in recipe.export.files if each.as_ == DEVELOPMENT]
     asked = asked or list(requests([{"kind": "dxf"}], FILES))
     mm = UNIT_MM[asked[0].unit_for(recipe.units)]
