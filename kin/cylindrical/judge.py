@@ -26,7 +26,7 @@ from kin.cylindrical.grid import angles_for
 from kin.cylindrical.lifts import degrees_over
 from kin.cylindrical.roller import Worst
 from kin.cylindrical.shoe import shoe_interference
-from kin.cylindrical.split import joined
+from kin.read.mesh.split import joined
 from kin.cylindrical.torn_edges import missing, triangles_at
 from kin.cylindrical.verdict import DrumVerdict, FlankVerdict, MotionError, Play
 from kin.cylindrical.volume import volume_within

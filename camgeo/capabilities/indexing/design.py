@@ -2,25 +2,23 @@
 
 from __future__ import annotations
 
+import math
 from functools import cached_property
 from typing import TYPE_CHECKING
 
 from camgeo.capabilities.indexing.flank import Flank
-from camgeo.measures.placed import greatest_of
 from camgeo.part.body import bore_of
-from kin.numeric.angles import TURN
 from kin.numeric.lengths import in_unit
-from kin.numeric.records import dataclass
+from kin.numeric.records import dataclass, replace
 
 if TYPE_CHECKING:
-    from collections.abc import Callable
-
     from camgeo.capabilities.indexing.index_recipe import IndexRecipe
     from camgeo.capabilities.indexing.law import IndexLaw
     from camgeo.part.shapes import Opening
     from camgeo.schema.errors import RecipeErrors
     from kin.law.sources.motion import Motion
-    from kin.numeric.arrays import Array
+
+ROUNDING = 1e-9  # of a turn
 
 
 @dataclass(frozen=True, eq=False)
@@ -42,9 +40,27 @@ class IndexDesign:
         sides = {"lower": -1, "upper": 1}
         return {name: Flank(recipe.form, self.law, recipe.start, sizes[name], sides[name]) for name in sizes}
 
-    def greatest(self, figure: Callable[[Array], Array]) -> tuple[float, float]:
-        """Greatest value of a figure over shaft angles (n,), rad, of one turn, and its angle, rad."""
-        return greatest_of(figure, TURN)
+    def resized(self, radius: float) -> IndexDesign:
+        """The same cam for rollers of another radius, mm."""
+        recipe = self.recipe
+        return replace(self, recipe=replace(recipe, roller=replace(recipe.roller, radius=radius)))
+
+    @property
+    def largest(self) -> float:
+        """Radius of the roller of that flank, mm, whose roller is larger."""
+        return self.recipe.roller.radius + max(self.recipe.clearance, 0.0)
+
+    @property
+    def spanned(self) -> tuple[float, float]:
+        """Angles of the turret, rad, between which a roller is in touch with the cam."""
+        return self.recipe.turret.spanned(self.largest, self.recipe.form.blank, self.recipe.length)
+
+    @cached_property
+    def turns(self) -> range:
+        """Whole turns after which a roller may touch the cam, of the roller that stands at the start after none."""
+        (low, high), (least, most) = self.spanned, self.motion.range
+        first = math.ceil((low - self.recipe.start - most) / self.recipe.advance - ROUNDING)
+        return range(first, math.floor((high - self.recipe.start - least) / self.recipe.advance + ROUNDING) + 1)
 
     @property
     def bore(self) -> Opening | None:

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 from typing import TYPE_CHECKING
 
 from camgeo.recipe.recipe import ShaftOrder
@@ -13,6 +12,7 @@ if TYPE_CHECKING:
     from typing import ClassVar
 
     from camgeo.capabilities.indexing.forms import Barrel, Globoid
+    from camgeo.capabilities.indexing.turrets import Turret
     from camgeo.motions.motion import MotionSource
     from camgeo.part.part import Part
     from camgeo.recipe.export import FileRequest
@@ -50,14 +50,15 @@ class Drive:
 class IndexRecipe(ShaftOrder):
     """A recipe of an indexing cam; lengths in mm, angles in rad.
 
-    `form` is that of the blank, with the place of the turret. The turret has `stops` equal `roller`s; one of them
-    stands at the angle `start` where the motion begins. The roller of the upper flank is larger by `clearance`, smaller
+    `form` is the blank, and `turret` leads the rollers about it. There are `stops` equal rollers; one of them stands at
+    the angle `start` where the motion begins. The roller of the upper flank is larger by `clearance`, smaller
     by a preload where that is below 0. The thickness of `part` is the cam's length.
     """
 
     root: ClassVar[str] = "indexing"
 
     form: Barrel | Globoid
+    turret: Turret
     roller: Roller
     stops: int
     start: float
@@ -89,16 +90,17 @@ class IndexRecipe(ShaftOrder):
         return request.tolerance or self.export.tolerance
 
     @property
-    def height(self) -> float:
+    def length(self) -> float:
         """Length of the cam along its axis, mm."""
         return self.form.length
+
+    @property
+    def layers(self) -> tuple[float, float]:
+        """Layers of the floor and of the blank, mm, the smaller one first."""
+        ends = self.form.floor, self.form.blank
+        return min(ends), max(ends)
 
     @property
     def follower_name(self) -> str:
         """Name of the follower in reports."""
         return f"turret of {self.stops} rollers"
-
-    @property
-    def start_degrees(self) -> float:
-        """Angle of a roller where the motion begins, degrees."""
-        return math.degrees(self.start)

@@ -18,7 +18,6 @@ if TYPE_CHECKING:
     from kin.numeric.arrays import Array
 
 
-
 @dataclass(frozen=True, eq=False)
 class IndexLaw:
     """S, rad, over the shaft angle, rad, any real number: S(theta + 2 pi) = S(theta) + `advance`.
@@ -73,7 +72,7 @@ class IndexLaw:
 
     @cached_property
     def breaks(self) -> Array:
-        """Angles (b,) in [0, 2 pi), rad, rising, at which a derivative may jump: knots, and 0 unless S runs on there."""
+        """Angles (b,) in [0, 2 pi), rad, rising, at which a derivative may jump; 0 is none within a dwell."""
         inner = self.turn.knots[1:-1]
         ends = self.turn.functions[0], self.turn.functions[-1]
         if all(isinstance(each, Constant) for each in ends):
