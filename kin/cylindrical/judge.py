@@ -83,13 +83,14 @@ def verify_development(
     OSError where the disk refuses, UnitsError where the file states another unit than `units`, ValueError for a file
     that is no DXF.
     """
-    from kin.cylindrical.development import judged_line, read_lines
+    from kin.cylindrical.development import judged_line
+    from kin.read.drawing.straight import read_lines
 
     kind = format_of(path)
     if kind.name != "dxf":
         raise ValueError(f"{path.name} is no DXF")
     try:
-        stated, read = read_lines(path, lines)
+        stated, read = read_lines(path, [line.layer for line in lines])
     except ReadError as error:
         return DrumVerdict(kind.name, (about(unread_check(kind.contents, error), path.name),))
     demand_same(stated, units, path)

@@ -127,9 +127,7 @@ def plain_offs(body: Body, intent: IndexIntent, tolerance: float) -> dict[str, A
     return offs
 
 
-def sorted_faces(
-    body: Body, intent: IndexIntent, offs: dict[str, Array], away: Array, tolerance: float
-) -> Faces:
+def sorted_faces(body: Body, intent: IndexIntent, offs: dict[str, Array], away: Array, tolerance: float) -> Faces:
     """Faces of triangles that are `offs` from plain faces and `away` (t,), mm, from flanks."""
     kinds = tuple(offs)
     every = np.stack(list(offs.values()))

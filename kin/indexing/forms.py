@@ -42,6 +42,16 @@ class Form(Protocol):
     def lever(self) -> float:
         """Distance from the turret's axis at which a flank carries at most, mm."""
 
+    @property
+    def inwards(self) -> int:
+        """Which way along a roller its deeper end is."""
+
+    def developed(self, radius: float) -> float:
+        """Depth of the cylinder of a radius, mm; raises ValueError for a form whose layers are no cylinders."""
+
+    def met(self, radius: float, psi: Array) -> tuple[Array, Array]:
+        """Where rollers' axes at angles psi meet the cylinder of a radius: polar angle ahead of theirs, and height."""
+
     def demand(self, stops: int, roller: float, ends: tuple[float, float]) -> None:
         """Raise ValueError for a turret that such a form cannot have; `ends` are the heights of both faces."""
 
@@ -89,7 +99,6 @@ class Form(Protocol):
 
     def depth_at(self, place: float) -> float:
         """Depth of the layer that a roller reaches at a place along it, if it is level and on a radius of the cam."""
-
 
     def bent(self, ways: Array, places: Array) -> tuple[Array, Array]:
         """How far the depth may be above and below that of a plane, mm (t,), on triangles.
@@ -144,6 +153,21 @@ class Barrel:
     def lever(self) -> float:
         """The pitch radius."""
         return self.pitch
+
+    @property
+    def inwards(self) -> int:
+        """Places along a roller are counted from the cam's axis."""
+        return -1
+
+    def developed(self, radius: float) -> float:
+        """Below the blank's radius."""
+        return self.radius - radius
+
+    def met(self, radius: float, psi: Array) -> tuple[Array, Array]:
+        """Axes are parallel to the radius of the cam; nan where they pass the cylinder by."""
+        with np.errstate(invalid="ignore"):
+            ahead = np.arcsin((self.offset - self.sense * self.pitch * np.cos(psi)) / radius)
+        return ahead, np.where(np.isfinite(ahead), self.pitch * np.sin(psi), np.nan)
 
     def demand(self, stops: int, roller: float, ends: tuple[float, float]) -> None:
         """Raise ValueError where the rollers on the turret overlap."""
@@ -260,6 +284,19 @@ class Globoid:
     def lever(self) -> float:
         """The floor's radius about the turret's axis."""
         return self.radius + self.depth
+
+    @property
+    def inwards(self) -> int:
+        """Places along a roller are counted from the turret's axis."""
+        return 1
+
+    def developed(self, radius: float) -> float:
+        """None: a torus does not unroll. Raises ValueError."""
+        raise ValueError("a globoid has no development")
+
+    def met(self, radius: float, psi: Array) -> tuple[Array, Array]:
+        """None: there is no development. Raises ValueError."""
+        raise ValueError("a globoid has no development")
 
     def demand(self, stops: int, roller: float, ends: tuple[float, float]) -> None:
         """Raise ValueError where rollers overlap in the throat, or the throat is no longer there at the ends."""
@@ -382,8 +419,8 @@ class Globoid:
         wide, c = self.radius + self.depth, self.distance
         heights = np.array(ends)
         root = np.sqrt(wide**2 - heights**2)
-        low, high = (c**2 + wide**2) * heights - heights**3 / 3.0 - c * (
-            heights * root + wide**2 * np.arcsin(heights / wide)
+        low, high = (
+            (c**2 + wide**2) * heights - heights**3 / 3.0 - c * (heights * root + wide**2 * np.arcsin(heights / wide))
         )
         return math.pi * float(high - low)
 

@@ -177,7 +177,9 @@ class Rollers:
             beyond = np.where(rate > 0.0, (0.5 * (across + turned * (wide + near))) / np.maximum(rate, 1e-9), TURN)
         wide = np.minimum(wide + near + beyond, 0.25 * TURN)
         level = max(0, min(self.levels, int(math.log(TURN / STEPS / max(float(np.median(wide)), 1e-9), PARTS)) + 1))
-        found = self._least(middle - wide, middle + wide, level, lambda own, nodes: self._edges(start[own], last[own], nodes))
+        found = self._least(
+            middle - wide, middle + wide, level, lambda own, nodes: self._edges(start[own], last[own], nodes)
+        )
         better = np.where(one.excess <= other.excess, 0, 1)
         least = np.minimum(one.excess, other.excess)
         at = np.where(better == 0, one.theta, other.theta)
