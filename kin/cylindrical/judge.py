@@ -26,7 +26,6 @@ from kin.cylindrical.grid import angles_for
 from kin.cylindrical.lifts import degrees_over
 from kin.cylindrical.roller import Worst
 from kin.cylindrical.shoe import shoe_interference
-from kin.read.mesh.split import joined
 from kin.cylindrical.torn_edges import missing, triangles_at
 from kin.cylindrical.verdict import DrumVerdict, FlankVerdict, MotionError, Play
 from kin.cylindrical.volume import volume_within
@@ -40,6 +39,7 @@ from kin.read.checks import count_check, demand_same, units_check, unread_check
 from kin.read.errors import ReadError
 from kin.read.files import read_mesh
 from kin.read.formats import format_of
+from kin.read.mesh.split import joined
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence

@@ -102,7 +102,7 @@ def judged_line(
 def _missing(parts: list[Array], rollers: Rollers, line: Developed, depth: float) -> tuple[float, float] | None:
     """A place x, y, mm, at which no line is drawn and one should be; None where there is none."""
     intent, turn = rollers.intent, TURN * line.radius
-    phi = (np.arange(ANGLES) + 0.5) * (TURN / ANGLES)
+    phi = (np.arange(ANGLES) + 0.5) * np.float64(TURN / ANGLES)
     if line.flank == "pitch":
         wanted = [height for _, height in _paths(rollers, line.radius, phi)]
     else:

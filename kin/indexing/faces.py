@@ -181,7 +181,7 @@ def _off_bore(body: Body, bore: Hole) -> Array:
 def _off_outline(bore: Hole, start: Array, last: Array, fine: float) -> float:
     """Greatest distance, mm, of lines from the outline of a bore, seen along z, to within `fine`."""
     flat = np.hstack([start, last])
-    flat = np.unique(np.where((start > last).any(axis=1)[:, None], flat[:, [2, 3, 0, 1]], flat), axis=0)
+    flat = np.unique(np.where(start[:, :1] > last[:, :1], flat[:, [2, 3, 0, 1]], flat), axis=0)
     way = flat[:, 2:] - flat[:, :2]
     length = np.hypot(way[:, 0], way[:, 1])
     moved = length > 0.0

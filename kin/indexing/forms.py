@@ -169,7 +169,7 @@ class Barrel:
             ahead = np.arcsin((self.offset - self.sense * self.pitch * np.cos(psi)) / radius)
         return ahead, np.where(np.isfinite(ahead), self.pitch * np.sin(psi), np.nan)
 
-    def demand(self, stops: int, roller: float, ends: tuple[float, float]) -> None:
+    def demand(self, stops: int, roller: float, _ends: tuple[float, float]) -> None:
         """Raise ValueError where the rollers on the turret overlap."""
         if 2.0 * self.pitch * math.sin(math.pi / stops) <= 2.0 * roller:
             raise ValueError("neighbouring rollers overlap")
@@ -182,15 +182,15 @@ class Barrel:
         """Radius of the cylinder of a depth."""
         return np.asarray(self.radius - depth + 0.0 * z)
 
-    def plane(self, x: Array, y: Array, z: Array) -> tuple[Array, Array]:
+    def plane(self, _x: Array, y: Array, z: Array) -> tuple[Array, Array]:
         """The turret's plane is square to the rollers."""
         return self.sense * (self.offset - y), z
 
-    def beside(self, y: Array, u: Array, v: Array, psi: Array) -> tuple[Array, Array]:
+    def beside(self, _y: Array, u: Array, v: Array, psi: Array) -> tuple[Array, Array]:
         """Axes are points of the turret's plane."""
         return u - self.pitch * np.cos(psi), v - self.pitch * np.sin(psi)
 
-    def touch(self, s: Array, y: Array, radius: Array) -> Array:
+    def touch(self, s: Array, _y: Array, radius: Array) -> Array:
         """By the law of cosines."""
         half = (radius**2 - (s - self.pitch) ** 2) / (4.0 * self.pitch * s)
         with np.errstate(invalid="ignore"):
@@ -201,16 +201,16 @@ class Barrel:
         """Derivative of the law of cosines."""
         return np.asarray(2.0 * self.pitch * s * np.sin(d))
 
-    def along(self, x: Array, s: Array, d: Array) -> Array:
+    def along(self, x: Array, _s: Array, _d: Array) -> Array:
         """Distance from the cam's axis."""
         return x
 
-    def across(self, way: Array, sine: Array, cosine: Array, psi: Array) -> Array:
+    def across(self, way: Array, sine: Array, cosine: Array, _psi: Array) -> Array:
         """All rollers point along e_r."""
         over = way[:, 1] * cosine - way[:, 0] * sine
         return np.asarray(over**2 + way[:, 2] ** 2)
 
-    def turning(self, slope: float) -> float:
+    def turning(self, _slope: float) -> float:
         """They turn with e_r."""
         return 1.0
 
@@ -290,11 +290,11 @@ class Globoid:
         """Places along a roller are counted from the turret's axis."""
         return 1
 
-    def developed(self, radius: float) -> float:
+    def developed(self, _radius: float) -> float:
         """None: a torus does not unroll. Raises ValueError."""
         raise ValueError("a globoid has no development")
 
-    def met(self, radius: float, psi: Array) -> tuple[Array, Array]:
+    def met(self, _radius: float, _psi: Array) -> tuple[Array, Array]:
         """None: there is no development. Raises ValueError."""
         raise ValueError("a globoid has no development")
 
@@ -317,7 +317,7 @@ class Globoid:
         wide = self.radius + depth
         return np.asarray(self.distance - np.sqrt(np.maximum(wide**2 - z**2, 0.0)))
 
-    def plane(self, x: Array, y: Array, z: Array) -> tuple[Array, Array]:
+    def plane(self, x: Array, _y: Array, z: Array) -> tuple[Array, Array]:
         """The turret's plane has both axes of the cam, e_r and k."""
         return self.distance - x, z
 
@@ -335,7 +335,7 @@ class Globoid:
         """Derivative of the squared distance."""
         return np.asarray(s**2 * np.sin(2.0 * d))
 
-    def along(self, x: Array, s: Array, d: Array) -> Array:
+    def along(self, _x: Array, s: Array, d: Array) -> Array:
         """Distance from the turret's axis along the roller."""
         return np.asarray(s * np.cos(d))
 
@@ -348,7 +348,7 @@ class Globoid:
         """They turn with e_r and on the turret."""
         return math.hypot(1.0, slope)
 
-    def window(self, r: Array, z: Array, reach: float) -> tuple[Array, Array]:
+    def window(self, r: Array, _z: Array, reach: float) -> tuple[Array, Array]:
         """All rollers pass through the line along e_r: at a reach from it, on the turret's side of the cam."""
         wide = np.arcsin(np.clip(reach / np.maximum(r, 1e-9), 0.0, 1.0))
         return -wide, wide

@@ -107,7 +107,7 @@ def _take(rollers: Rollers, places: tuple[Array, Indices], side: Side, rows: lis
     radius = np.full(len(step), intent.radius(side))
     gives, falls = [], np.zeros(len(step))
     for after in (0, 1):
-        theta = (step + after) * (TURN / count)
+        theta = (step + after) * np.float64(TURN / count)
         met = rollers.at(points, theta)
         along = form.along(met.x, met.s, met.d)
         there = (along >= intent.inner) & (along <= intent.outer) & (met.d * side > 0.0)
@@ -133,7 +133,7 @@ def by_error(rollers: Rollers, side: Side, layer: float | None = None) -> float:
     """
     intent = rollers.intent
     form, radius = intent.form, intent.radius(side)
-    theta = np.arange(ANGLES) * (TURN / ANGLES)
+    theta = np.arange(ANGLES) * np.float64(TURN / ANGLES)
     psi, slope = rollers.turning.at(theta)
     worst = 0.0
     for k in range(-intent.stops, intent.stops + 1):
@@ -141,9 +141,10 @@ def by_error(rollers: Rollers, side: Side, layer: float | None = None) -> float:
         for share in np.linspace(0.0, 1.0, 5):
             rho = np.full(ANGLES, intent.inner + share * (intent.outer - intent.inner))
             cost, depth, height = form.costs(rho, (own, slope), side * radius)
-            for _ in range(0 if layer is None else MEETINGS):
-                rho = np.maximum(rho + form.inwards * (layer - depth), NEAR)
-                cost, depth, height = form.costs(rho, (own, slope), side * radius)
+            if layer is not None:
+                for _ in range(MEETINGS):
+                    rho = np.maximum(rho + form.inwards * (layer - depth), NEAR)
+                    cost, depth, height = form.costs(rho, (own, slope), side * radius)
             there = (np.abs(own) < 0.5 * math.pi) & (height >= intent.ends[0]) & (height <= intent.ends[1])
             there &= (depth >= -NEAR) & (depth <= form.depth + NEAR)
             worst = max(worst, float(cost[there].max(initial=0.0)))

@@ -50,7 +50,7 @@ def _taken(rollers: Rollers, depth: float) -> Array:
     """What rollers take of a layer (ANGLES,), per depth and polar angle, mm^2: stretches that overlap count once."""
     form, layer = rollers.intent.form, np.full(1, depth)
     bottom, top = form.faces(layer, rollers.intent.ends)
-    phi = np.arange(ANGLES) * (TURN / ANGLES)
+    phi = np.arange(ANGLES) * np.float64(TURN / ANGLES)
     total, reached = np.zeros(ANGLES), np.broadcast_to(bottom, (ANGLES,))
     for least, most in swept_stretches(rollers, depth, phi):
         met = np.isfinite(least) & np.isfinite(most)
