@@ -68,20 +68,16 @@ class Known:
             row[asked] = values
         met, form = rollers.at(points, found.theta), rollers.intent.form
         radius = rollers.own(met)
-        rows = [np.full(count, np.nan) for _ in range(4)]
+        distance, along, gives, slope = (np.full(count, np.nan) for _ in range(4))
         size = np.abs(met.d)
         touch = form.touch(met.s, met.y, radius)
-        values = (
-            rollers.distance(found.excess, radius),
-            form.along(met.x, met.s, met.d),
-            touch - size,
-            form.slope(met.s, np.where(np.isfinite(touch), touch, size)),
-        )
-        for row, value in zip(rows, values, strict=True):
-            row[asked] = value
+        distance[asked] = rollers.distance(found.excess, radius)
+        along[asked] = form.along(met.x, met.s, met.d)
+        gives[asked] = touch - size
+        slope[asked] = form.slope(met.s, np.where(np.isfinite(touch), touch, size))
         above = np.zeros(count, dtype=np.bool_)
         above[asked] = met.d > 0.0
-        return Known(worst, rows[0], above, *rows[1:])
+        return Known(worst, distance, above, along, gives, slope)
 
     def take(self, which: Indices) -> Worst:
         """Worst angles of some corners."""
@@ -147,7 +143,7 @@ def bare(rollers: Rollers, body: Body, known: Known, which: Indices) -> Peak:
 
 
 def _farthest(rollers: Rollers, triangles: Array, theta: Array) -> Array:
-    """Bound (t,), mm, of how far triangles (t, 3, 3) are from rollers, by corners at one angle between theirs (t, 3)."""
+    """Bound (t,), mm, of how far triangles (t, 3, 3) are from rollers, by corners at an angle between theirs (t, 3)."""
     middle = np.repeat(0.5 * (theta.min(axis=1) + theta.max(axis=1)), 3)
     met = rollers.at(triangles.reshape(-1, 3), middle)
     off = rollers.distance(met.excess, rollers.own(met)).reshape(-1, 3)

@@ -127,9 +127,7 @@ def plain_offs(body: Body, intent: IndexIntent, tolerance: float) -> dict[str, A
     return offs
 
 
-def sorted_faces(
-    body: Body, intent: IndexIntent, offs: dict[str, Array], away: Array, tolerance: float
-) -> Faces:
+def sorted_faces(body: Body, intent: IndexIntent, offs: dict[str, Array], away: Array, tolerance: float) -> Faces:
     """Faces of triangles that are `offs` from plain faces and `away` (t,), mm, from flanks."""
     kinds = tuple(offs)
     every = np.stack(list(offs.values()))
@@ -183,7 +181,7 @@ def _off_bore(body: Body, bore: Hole) -> Array:
 def _off_outline(bore: Hole, start: Array, last: Array, fine: float) -> float:
     """Greatest distance, mm, of lines from the outline of a bore, seen along z, to within `fine`."""
     flat = np.hstack([start, last])
-    flat = np.unique(np.where((start > last).any(axis=1)[:, None], flat[:, [2, 3, 0, 1]], flat), axis=0)
+    flat = np.unique(np.where(start[:, :1] > last[:, :1], flat[:, [2, 3, 0, 1]], flat), axis=0)
     way = flat[:, 2:] - flat[:, :2]
     length = np.hypot(way[:, 0], way[:, 1])
     moved = length > 0.0

@@ -42,6 +42,16 @@ class Form(Protocol):
     def lever(self) -> float:
         """Distance from the turret's axis at which a flank carries at most, mm."""
 
+    @property
+    def inwards(self) -> int:
+        """Which way along a roller its deeper end is."""
+
+    def developed(self, radius: float) -> float:
+        """Depth of the cylinder of a radius, mm; raises ValueError for a form whose layers are no cylinders."""
+
+    def met(self, radius: float, psi: Array) -> tuple[Array, Array]:
+        """Where rollers' axes at angles psi meet the cylinder of a radius: polar angle ahead of theirs, and height."""
+
     def demand(self, stops: int, roller: float, ends: tuple[float, float]) -> None:
         """Raise ValueError for a turret that such a form cannot have; `ends` are the heights of both faces."""
 
@@ -89,7 +99,6 @@ class Form(Protocol):
 
     def depth_at(self, place: float) -> float:
         """Depth of the layer that a roller reaches at a place along it, if it is level and on a radius of the cam."""
-
 
     def bent(self, ways: Array, places: Array) -> tuple[Array, Array]:
         """How far the depth may be above and below that of a plane, mm (t,), on triangles.
@@ -145,7 +154,22 @@ class Barrel:
         """The pitch radius."""
         return self.pitch
 
-    def demand(self, stops: int, roller: float, ends: tuple[float, float]) -> None:
+    @property
+    def inwards(self) -> int:
+        """Places along a roller are counted from the cam's axis."""
+        return -1
+
+    def developed(self, radius: float) -> float:
+        """Below the blank's radius."""
+        return self.radius - radius
+
+    def met(self, radius: float, psi: Array) -> tuple[Array, Array]:
+        """Axes are parallel to the radius of the cam; nan where they pass the cylinder by."""
+        with np.errstate(invalid="ignore"):
+            ahead = np.arcsin((self.offset - self.sense * self.pitch * np.cos(psi)) / radius)
+        return ahead, np.where(np.isfinite(ahead), self.pitch * np.sin(psi), np.nan)
+
+    def demand(self, stops: int, roller: float, _ends: tuple[float, float]) -> None:
         """Raise ValueError where the rollers on the turret overlap."""
         if 2.0 * self.pitch * math.sin(math.pi / stops) <= 2.0 * roller:
             raise ValueError("neighbouring rollers overlap")
@@ -158,15 +182,15 @@ class Barrel:
         """Radius of the cylinder of a depth."""
         return np.asarray(self.radius - depth + 0.0 * z)
 
-    def plane(self, x: Array, y: Array, z: Array) -> tuple[Array, Array]:
+    def plane(self, _x: Array, y: Array, z: Array) -> tuple[Array, Array]:
         """The turret's plane is square to the rollers."""
         return self.sense * (self.offset - y), z
 
-    def beside(self, y: Array, u: Array, v: Array, psi: Array) -> tuple[Array, Array]:
+    def beside(self, _y: Array, u: Array, v: Array, psi: Array) -> tuple[Array, Array]:
         """Axes are points of the turret's plane."""
         return u - self.pitch * np.cos(psi), v - self.pitch * np.sin(psi)
 
-    def touch(self, s: Array, y: Array, radius: Array) -> Array:
+    def touch(self, s: Array, _y: Array, radius: Array) -> Array:
         """By the law of cosines."""
         half = (radius**2 - (s - self.pitch) ** 2) / (4.0 * self.pitch * s)
         with np.errstate(invalid="ignore"):
@@ -177,16 +201,16 @@ class Barrel:
         """Derivative of the law of cosines."""
         return np.asarray(2.0 * self.pitch * s * np.sin(d))
 
-    def along(self, x: Array, s: Array, d: Array) -> Array:
+    def along(self, x: Array, _s: Array, _d: Array) -> Array:
         """Distance from the cam's axis."""
         return x
 
-    def across(self, way: Array, sine: Array, cosine: Array, psi: Array) -> Array:
+    def across(self, way: Array, sine: Array, cosine: Array, _psi: Array) -> Array:
         """All rollers point along e_r."""
         over = way[:, 1] * cosine - way[:, 0] * sine
         return np.asarray(over**2 + way[:, 2] ** 2)
 
-    def turning(self, slope: float) -> float:
+    def turning(self, _slope: float) -> float:
         """They turn with e_r."""
         return 1.0
 
@@ -261,6 +285,19 @@ class Globoid:
         """The floor's radius about the turret's axis."""
         return self.radius + self.depth
 
+    @property
+    def inwards(self) -> int:
+        """Places along a roller are counted from the turret's axis."""
+        return 1
+
+    def developed(self, _radius: float) -> float:
+        """None: a torus does not unroll. Raises ValueError."""
+        raise ValueError("a globoid has no development")
+
+    def met(self, _radius: float, _psi: Array) -> tuple[Array, Array]:
+        """None: there is no development. Raises ValueError."""
+        raise ValueError("a globoid has no development")
+
     def demand(self, stops: int, roller: float, ends: tuple[float, float]) -> None:
         """Raise ValueError where rollers overlap in the throat, or the throat is no longer there at the ends."""
         apart = self.radius * math.sin(min(2.0 * math.pi / stops, 0.5 * math.pi))
@@ -280,7 +317,7 @@ class Globoid:
         wide = self.radius + depth
         return np.asarray(self.distance - np.sqrt(np.maximum(wide**2 - z**2, 0.0)))
 
-    def plane(self, x: Array, y: Array, z: Array) -> tuple[Array, Array]:
+    def plane(self, x: Array, _y: Array, z: Array) -> tuple[Array, Array]:
         """The turret's plane has both axes of the cam, e_r and k."""
         return self.distance - x, z
 
@@ -298,7 +335,7 @@ class Globoid:
         """Derivative of the squared distance."""
         return np.asarray(s**2 * np.sin(2.0 * d))
 
-    def along(self, x: Array, s: Array, d: Array) -> Array:
+    def along(self, _x: Array, s: Array, d: Array) -> Array:
         """Distance from the turret's axis along the roller."""
         return np.asarray(s * np.cos(d))
 
@@ -311,7 +348,7 @@ class Globoid:
         """They turn with e_r and on the turret."""
         return math.hypot(1.0, slope)
 
-    def window(self, r: Array, z: Array, reach: float) -> tuple[Array, Array]:
+    def window(self, r: Array, _z: Array, reach: float) -> tuple[Array, Array]:
         """All rollers pass through the line along e_r: at a reach from it, on the turret's side of the cam."""
         wide = np.arcsin(np.clip(reach / np.maximum(r, 1e-9), 0.0, 1.0))
         return -wide, wide
@@ -382,8 +419,8 @@ class Globoid:
         wide, c = self.radius + self.depth, self.distance
         heights = np.array(ends)
         root = np.sqrt(wide**2 - heights**2)
-        low, high = (c**2 + wide**2) * heights - heights**3 / 3.0 - c * (
-            heights * root + wide**2 * np.arcsin(heights / wide)
+        low, high = (
+            (c**2 + wide**2) * heights - heights**3 / 3.0 - c * (heights * root + wide**2 * np.arcsin(heights / wide))
         )
         return math.pi * float(high - low)
 

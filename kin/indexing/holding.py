@@ -29,6 +29,8 @@ if TYPE_CHECKING:
 SHARE = 0.05  # of the tolerance: what angles between two of the grid may cost
 LEAST, MOST = 1024, 65_536  # angles of the grid
 LAYERS = (0.137, 0.382, 0.618, 0.881)  # of the length of a roller, at which flanks are asked
+NEAR = 1e-3  # mm: a roller that touches so near the blank or the floor touches a flank
+MEETINGS = 30  # steps to the place of a roller that touches a layer
 ANGLES = 720  # at which the steepest place is looked for
 
 
@@ -105,7 +107,7 @@ def _take(rollers: Rollers, places: tuple[Array, Indices], side: Side, rows: lis
     radius = np.full(len(step), intent.radius(side))
     gives, falls = [], np.zeros(len(step))
     for after in (0, 1):
-        theta = (step + after) * (TURN / count)
+        theta = (step + after) * np.float64(TURN / count)
         met = rollers.at(points, theta)
         along = form.along(met.x, met.s, met.d)
         there = (along >= intent.inner) & (along <= intent.outer) & (met.d * side > 0.0)
@@ -124,11 +126,14 @@ def _take(rollers: Rollers, places: tuple[Array, Indices], side: Side, rows: lis
     np.maximum.at(rows[1], step % count, np.minimum(*gives) - room * falls)
 
 
-def by_error(rollers: Rollers, side: Side) -> float:
-    """Greatest turn of the turret, rad, that an error of 1 mm of a flank costs where it may carry a roller."""
+def by_error(rollers: Rollers, side: Side, layer: float | None = None) -> float:
+    """Greatest turn of the turret, rad, that an error of 1 mm of a flank costs where it may carry a roller.
+
+    It is that along the whole roller, or where it touches the layer of a depth, mm.
+    """
     intent = rollers.intent
     form, radius = intent.form, intent.radius(side)
-    theta = np.arange(ANGLES) * (TURN / ANGLES)
+    theta = np.arange(ANGLES) * np.float64(TURN / ANGLES)
     psi, slope = rollers.turning.at(theta)
     worst = 0.0
     for k in range(-intent.stops, intent.stops + 1):
@@ -136,7 +141,11 @@ def by_error(rollers: Rollers, side: Side) -> float:
         for share in np.linspace(0.0, 1.0, 5):
             rho = np.full(ANGLES, intent.inner + share * (intent.outer - intent.inner))
             cost, depth, height = form.costs(rho, (own, slope), side * radius)
+            if layer is not None:
+                for _ in range(MEETINGS):
+                    rho = np.maximum(rho + form.inwards * (layer - depth), NEAR)
+                    cost, depth, height = form.costs(rho, (own, slope), side * radius)
             there = (np.abs(own) < 0.5 * math.pi) & (height >= intent.ends[0]) & (height <= intent.ends[1])
-            there &= (depth >= 0.0) & (depth <= form.depth)
+            there &= (depth >= -NEAR) & (depth <= form.depth + NEAR)
             worst = max(worst, float(cost[there].max(initial=0.0)))
     return worst

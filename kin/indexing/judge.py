@@ -64,6 +64,43 @@ def verify(path: Path, intent: IndexIntent, limits: Limits, units: float | None 
     return replace(verdict, checks=tuple(about(check, path.name) for check in verdict.checks))
 
 
+def verify_development(
+    path: Path, intent: IndexIntent, lines: Sequence[Developed], limits: Limits, units: float | None = None
+) -> IndexVerdict:
+    """Judge a development's DXF line by line, each for the radius at which it is unrolled, and for no other.
+
+    A line may go on beyond one turn, as an overlap does. `units`, mm, is the unit of a file that states none. Raises
+    OSError where the disk refuses, UnitsError where the file states another unit than `units`, ValueError for a file
+    that is no DXF and for a globoid.
+    """
+    from kin.indexing.development import judged_line
+    from kin.read.drawing.straight import read_lines
+
+    kind = format_of(path)
+    if kind.name != "dxf":
+        raise ValueError(f"{path.name} is no DXF")
+    for line in lines:
+        intent.form.developed(line.radius)
+    try:
+        stated, read = read_lines(path, [line.layer for line in lines])
+    except ReadError as error:
+        return IndexVerdict(kind.name, (about(unread_check(kind.contents, error), path.name),))
+    demand_same(stated, units, path)
+    mm = stated or units or intent.mm
+    widest = max((float(np.ptp(part[:, 0])) for parts in read.values() for part in parts), default=0.0)
+    turn = TURN * max((line.radius for line in lines), default=1.0)
+    checks = [units_check(stated, units, intent.mm, lambda: intent.mm * widest / turn)]
+    verdicts, drawn = [], []
+    for line in lines:
+        parts = [mm * part * ([-1.0, 1.0] if intent.mirrored else [1.0, 1.0]) for part in read[line.layer]]
+        drawn += [(line.layer, part) for part in parts]
+        flank, own = judged_line(parts, intent, line, limits)
+        verdicts.append(flank)
+        checks += [replace(check, surface=line.layer) for check in own]
+    told = tuple(about(check, path.name) for check in checks)
+    return IndexVerdict(kind.name, told, tuple(verdicts), units=mm, lines=tuple(drawn))
+
+
 def judge_mesh(read: CheckedMesh, intent: IndexIntent, limits: Limits, kind: str = "") -> IndexVerdict:
     """Judge a mesh, mm, as its file has it; corners that it keeps apart by less than the tolerance are joined."""
     read, count, apart = joined(read, limits.tolerance)
@@ -187,7 +224,9 @@ class _Judged:
         # a corner whose roller passes right through it has no angle at which that touches
         gives = np.where(np.isfinite(known.gives), known.gives, np.where(known.distance < 0.0, math.pi, -math.pi))
         k = int(gives[own].argmax()) if len(own) else 0
-        peak = Peak(float(gives[own[k]]), 0.0, float(known.worst.theta[own[k]])) if len(own) else Peak(-math.pi, 0.0, 0.0)
+        peak = (
+            Peak(float(gives[own[k]]), 0.0, float(known.worst.theta[own[k]])) if len(own) else Peak(-math.pi, 0.0, 0.0)
+        )
         reach = np.stack([known.along[edged.start], known.along[edged.last]])
         beside = (reach.max(axis=0) >= intent.inner) & (reach.min(axis=0) <= intent.outer)
         slope = np.minimum(known.slope[edged.start], known.slope[edged.last])

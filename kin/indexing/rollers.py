@@ -8,14 +8,14 @@ divided, again and again, until what is left open is next to nothing. Neither a 
 
 How fast the excess of a point grows is told by the same steps: at x beyond CLOSE finest steps of its worst angle it is
 above its least by `growth` times x^2 at least, or the axes are out of reach there. Seen along an axis, the excess of an
-edge of a length e is below the lesser of its ends' by e^2/4 at most: away from the worst angles of its ends an edge need
-not be looked at. An axis that a triangle is nearer to than its edges passes through it, and so it is near those as well.
+edge as long as e is below the lesser of its ends' by e^2/4 at most: away from the worst angles of its ends an edge need
+not be looked at. An axis that a triangle is nearer to than its edges passes through it, so that it is near those too.
 """
 
 from __future__ import annotations
 
 import math
-from functools import cached_property
+from functools import cached_property, partial
 from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
@@ -72,7 +72,10 @@ class Worst(NamedTuple):
 
 @dataclass(frozen=True, eq=False)
 class Rollers:
-    """All rollers of an intent, looked at to a share of a tolerance, mm. Points have heights over the turret's centre."""
+    """All rollers of an intent, looked at to a share of a tolerance, mm.
+
+    Points have their heights over the turret's centre.
+    """
 
     intent: IndexIntent
     tolerance: float
@@ -105,7 +108,8 @@ class Rollers:
     def bends(self, step: float) -> Array:
         """Upper bounds (STEPS,) of the second derivative of the excess, in steps of an angle, rad."""
         reach = REACH * float(self.radii.max())
-        return self.intent.form.bends(*self.turning.fastest, (reach, step, 1.02 * self.farthest))
+        slope, curve = self.turning.fastest
+        return self.intent.form.bends(slope, curve, (reach, step, 1.02 * self.farthest))
 
     @cached_property
     def levels(self) -> int:
@@ -117,7 +121,7 @@ class Rollers:
     @cached_property
     def finest(self) -> float:
         """The finest step, rad."""
-        return TURN / (STEPS * PARTS**self.levels)
+        return TURN / float(STEPS * PARTS**self.levels)
 
     @cached_property
     def _falls(self) -> list[Array]:
@@ -146,7 +150,7 @@ class Rollers:
 
     def own(self, met: Met) -> Array:
         """Radius (n,) of the gauge of the flank that each point would be on, mm."""
-        return np.where(met.d > 0.0, self.radii[1], self.radii[0])
+        return np.asarray(np.where(met.d > 0.0, self.radii[1], self.radii[0]))
 
     def distance(self, excess: Array, radius: Array) -> Array:
         """Distance (n,), mm, from what rollers sweep; below 0 it is the depth within it."""
@@ -177,7 +181,9 @@ class Rollers:
             beyond = np.where(rate > 0.0, (0.5 * (across + turned * (wide + near))) / np.maximum(rate, 1e-9), TURN)
         wide = np.minimum(wide + near + beyond, 0.25 * TURN)
         level = max(0, min(self.levels, int(math.log(TURN / STEPS / max(float(np.median(wide)), 1e-9), PARTS)) + 1))
-        found = self._least(middle - wide, middle + wide, level, lambda own, nodes: self._edges(start[own], last[own], nodes))
+        found = self._least(
+            middle - wide, middle + wide, level, lambda own, nodes: self._edges(start[own], last[own], nodes)
+        )
         better = np.where(one.excess <= other.excess, 0, 1)
         least = np.minimum(one.excess, other.excess)
         at = np.where(better == 0, one.theta, other.theta)
@@ -211,7 +217,8 @@ class Rollers:
         if self.radii[0] == self.radii[1]:
             return float(self.radii[0] ** 2)
         pitch = self.intent.pitch
-        return np.where(off > pitch * np.rint(off * (1.0 / pitch)), self.radii[1] ** 2, self.radii[0] ** 2)
+        above = off > pitch * np.rint(off * (1.0 / pitch))
+        return np.asarray(np.where(above, self.radii[1] ** 2, self.radii[0] ** 2))
 
     def _edges(self, start: Array, last: Array, nodes: Indices) -> Array:
         """Excess (n, m) of edges between points (n, 3), (n, 3), at numbers of angles (n, m)."""
@@ -241,7 +248,7 @@ class Rollers:
         while len(order):
             size = max(1, PAIRS // int(count[order[-1]] + 1))
             own, order = order[-size:], order[:-size]
-            rows = self._searched(first[own] * unit, count[own], level, lambda nodes, own=own: excess(own, nodes))
+            rows = self._searched(first[own] * unit, count[own], level, partial(excess, own))
             for row, values in zip(found, rows, strict=True):
                 row[own] = values
         return found
@@ -282,4 +289,4 @@ class Rollers:
             rate = (values - least[:, None]) / np.where(left, 1, far).astype(np.float64) ** 2
             rate[left] = NEVER
             np.minimum(growth, rate.min(axis=1), out=growth)
-        return Worst(at * self.finest, least, opened, growth / self.finest**2)
+        return Worst(at * np.float64(self.finest), least, opened, growth / self.finest**2)

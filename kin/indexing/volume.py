@@ -20,6 +20,7 @@ if TYPE_CHECKING:
 
 ANGLES = 360  # of a turn
 LAYERS = 8  # by Gauss' rule from the blank to the floor
+HEIGHTS = 9  # at which it is looked how far round the cam a roller reaches
 SAMPLES = 73  # of the angles at which a roller passes a place
 
 
@@ -47,35 +48,42 @@ def exact_volume(rollers: Rollers) -> Volume:
 
 def _taken(rollers: Rollers, depth: float) -> Array:
     """What rollers take of a layer (ANGLES,), per depth and polar angle, mm^2: stretches that overlap count once."""
+    form, layer = rollers.intent.form, np.full(1, depth)
+    bottom, top = form.faces(layer, rollers.intent.ends)
+    phi = np.arange(ANGLES) * np.float64(TURN / ANGLES)
+    total, reached = np.zeros(ANGLES), np.broadcast_to(bottom, (ANGLES,))
+    for least, most in swept_stretches(rollers, depth, phi):
+        met = np.isfinite(least) & np.isfinite(most)
+        begin = np.where(met, np.maximum(np.clip(least, bottom, top), reached), 0.0)
+        end = np.where(met, np.maximum(np.clip(most, bottom, top), begin), 0.0)
+        total = total + np.where(met, form.measure(layer, end) - form.measure(layer, begin), 0.0)
+        reached = np.where(met, np.maximum(reached, end), reached)
+    return total
+
+
+def swept_stretches(rollers: Rollers, depth: float, phi: Array) -> list[tuple[Array, Array]]:
+    """Least and greatest height that each roller takes of a layer at polar angles (n,), rad, from the lowest roller on.
+
+    Heights are over the turret's centre, mm, of a globoid angles about the turret's axis; nan where it takes nothing.
+    """
     intent = rollers.intent
-    form = intent.form
-    layer = np.full(1, depth)
-    phi = np.arange(ANGLES) * (TURN / ANGLES)
+    form, layer = intent.form, np.full(1, depth)
     radius = max(intent.radius(-1), intent.radius(1))
-    heights = np.linspace(*intent.ends, 9)
+    heights = np.linspace(*intent.ends, HEIGHTS)
     found = [form.window(form.rims(depth, height), height, radius) for height in heights[:, None]]
     low, high = min(float(one[0]) for one, _ in found), max(float(other[0]) for _, other in found)
     ahead = np.linspace(low, high, SAMPLES)
     theta = (phi[:, None] - ahead).ravel()
-    psi = (rollers.turning.at(theta)[0] + intent.pitch * np.floor(theta / TURN)).reshape(ANGLES, SAMPLES)
+    psi = (rollers.turning.at(theta)[0] + intent.pitch * np.floor(theta / TURN)).reshape(len(phi), SAMPLES)
     first = math.floor((-0.5 * math.pi - float(psi.max())) / intent.pitch)
     last = math.ceil((0.5 * math.pi - float(psi.min())) / intent.pitch)
-    bottom, top = form.faces(layer, intent.ends)
     stretches = []
     for k in range(first, last + 1):
         own = psi + k * intent.pitch
         own = np.where(np.abs(own) <= 0.5 * math.pi, own, np.nan)
         least = -_greatest(-form.swept(layer, ahead, own, (intent.radius(-1), -1)))
-        most = _greatest(form.swept(layer, ahead, own, (intent.radius(1), 1)))
-        stretches.append((np.clip(least, bottom, top), np.clip(most, bottom, top)))
-    total, reached = np.zeros(ANGLES), np.broadcast_to(bottom, (ANGLES,))
-    for least, most in stretches:
-        met = np.isfinite(least) & np.isfinite(most)
-        begin = np.where(met, np.maximum(least, reached), 0.0)
-        end = np.where(met, np.maximum(most, begin), 0.0)
-        total = total + np.where(met, form.measure(layer, end) - form.measure(layer, begin), 0.0)
-        reached = np.where(met, np.maximum(reached, end), reached)
-    return total
+        stretches.append((least, _greatest(form.swept(layer, ahead, own, (intent.radius(1), 1)))))
+    return stretches
 
 
 def _greatest(values: Array) -> Array:

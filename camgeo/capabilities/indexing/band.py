@@ -8,6 +8,8 @@ edges that no line has are halved, until each is short enough.
 
 from __future__ import annotations
 
+import math
+from itertools import pairwise
 from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
@@ -22,6 +24,9 @@ CROSSED = "two lines in a layer of the cam cross"
 SHARP = 1e-2  # sine of a corner of one line below which it is cut off at the end alone
 FLAT = 1e-9  # sine of a corner that is none
 ROUNDS = 60
+APART = 0.7  # of what a triangle may span: lines between two lines, and their points
+THIN = 0.25  # of the height that a triangle may span: nearer lines have common angles
+SAME = 1e-12  # rad
 
 
 class Filled(NamedTuple):
@@ -99,10 +104,12 @@ def filled(
 
     `scale` has the lengths of both units, mm. No edge but those of the lines spans more than `wide`.
     """
-    triangles = band(phi * scale[0], h * scale[1], lower, upper)
-    if triangles.shape[0] != lower.size + upper.size - 4:
-        raise RegionError(CROSSED)
     known = phi.size
+    phi, h, lines = _between(phi, h, lower, upper, wide)
+    found = [band(phi * scale[0], h * scale[1], low, high) for low, high in pairwise(lines)]
+    triangles = np.concatenate(found)
+    if triangles.shape[0] != sum(low.size + high.size - 4 for low, high in pairwise(lines)):
+        raise RegionError(CROSSED)
     for _ in range(ROUNDS):
         start, end = triangles.ravel(), np.roll(triangles, -1, axis=1).ravel()
         low, high = np.minimum(start, end), np.maximum(start, end)
@@ -120,6 +127,32 @@ def filled(
         h = np.concatenate([h, 0.5 * (h[a] + h[b])[long]])
         triangles = _divided(triangles, middle[back].reshape(-1, 3), phi / wide[0], h / wide[1])
     raise RegionError("a layer of the cam is not divided finely enough")
+
+
+def _between(
+    phi: Array, h: Array, lower: Indices, upper: Indices, wide: tuple[float, float]
+) -> tuple[Array, Array, list[Indices]]:
+    """Polar angles and heights with those of lines between two lines, and the lines, rising.
+
+    Neighbours are nowhere farther apart than a share of the height `wide`. Where two lines come near to one another, a
+    line between them has a point at each of theirs, so that it crosses none.
+    """
+    x, y = [phi[each] for each in (lower, upper)], [h[each] for each in (lower, upper)]
+    at = np.unique(np.concatenate(x))
+    gap = np.interp(at, x[1], y[1]) - np.interp(at, x[0], y[0])
+    if not float(gap.max()) > APART * wide[1]:
+        return phi, h, [lower, upper]
+    count = max(2, math.ceil((at[-1] - at[0]) / (APART * wide[0])))
+    even = np.linspace(at[0], at[-1], count + 1)[1:-1]
+    near = at[1:-1][gap[1:-1] < THIN * wide[1]]
+    own = np.unique(np.concatenate([even, near]))
+    own = own[np.append(np.diff(own) > SAME, True)]
+    up = 0.5 * (np.interp(own, x[0], y[0]) + np.interp(own, x[1], y[1]))
+    middle = np.concatenate([lower[:1], phi.size + np.arange(own.size), lower[-1:]])
+    phi, h = np.concatenate([phi, own]), np.concatenate([h, up])
+    phi, h, below = _between(phi, h, lower, middle, wide)
+    phi, h, above = _between(phi, h, middle, upper, wide)
+    return phi, h, [*below, *above[1:]]
 
 
 def _divided(triangles: Indices, middle: Indices, x: Array, y: Array) -> Indices:

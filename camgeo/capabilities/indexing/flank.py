@@ -21,7 +21,7 @@ from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
-from camgeo.capabilities.indexing.forms import Number, Pose
+from camgeo.capabilities.indexing.forms import Number, Pose, directed, length_of
 from camgeo.curve.curve import CurveError
 from kin.numeric.records import dataclass
 
@@ -101,9 +101,9 @@ class Flank:
     def touch(self, pose: Pose, rho: Number) -> Touch:
         """First derivatives at distances rho along the roller, of arrays or balls."""
         speed, reach = self.form.speed(pose, rho), self.side * self.radius
-        w = (speed.a * speed.a + speed.b * speed.b) ** 0.5
+        w = length_of(speed.a, speed.b)
         inverse = w**-1
-        sine, cosine = speed.b * inverse, speed.a * inverse
+        sine, cosine = directed(speed.a, speed.b, inverse)
         w1, w2 = (cosine * a + sine * b for a, b in ((speed.a1, speed.b1), (speed.a2, speed.b2)))
         a1, a2 = ((cosine * b - sine * a) * inverse for a, b in ((speed.a1, speed.b1), (speed.a2, speed.b2)))
         turn, bend = self.form.tilt(pose)[0] - a1, w * a2 * -1.0

@@ -25,7 +25,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple, TypeAlias
 
 import numpy as np
 
-from kin.numeric.interval import Ball, sin_cos
+from kin.numeric.interval import Ball, atan2, sin_cos
 from kin.numeric.records import dataclass
 
 if TYPE_CHECKING:
@@ -41,6 +41,20 @@ Number: TypeAlias = Any
 """An array, or balls."""
 Vector: TypeAlias = tuple[Number, Number, Number]
 """Parts of a vector along e_r, e_t and k, or along g, tau and n, each an array or balls."""
+
+
+def directed(a: Number, b: Number, inverse: Number) -> tuple[Number, Number]:
+    """Sine and cosine of the angle of (a, b), whose length has an inverse; balls no wider than that angle has them."""
+    return sin_cos(atan2(b, a)) if isinstance(a, Ball) else (b * inverse, a * inverse)
+
+
+def length_of(a: Number, b: Number) -> Number:
+    """Length of (a, b), of arrays or balls."""
+    square = a**2 + b**2
+    if isinstance(square, Ball):  # which rounding may have led below 0
+        low, high = square.bounds()
+        return Ball.between(np.maximum(low, 0.0), high) ** 0.5
+    return square**0.5
 
 
 class Speed(NamedTuple):
@@ -157,7 +171,7 @@ class Barrel:
     def layer(self, place: Vector) -> tuple[Number, Vector]:
         """Layers of places along e_r, e_t and k, mm (n,), and the unit normals of these, towards greater w."""
         x, y, z = place
-        r = (x * x + y * y) ** 0.5
+        r = length_of(x, y)
         inverse = r**-1
         return r, (x * inverse, y * inverse, z * 0.0)
 
@@ -187,16 +201,10 @@ class Barrel:
         """Greatest distance from the cam's axis, mm, of a layer w, mm, between the end faces."""
         return w
 
-    def reach(self, w: float, radius: float) -> tuple[float, float]:
-        """Least and greatest distance rho, mm, at which a roller of a radius may touch a layer w, mm."""
-        most = max(abs(self.offset - self.pitch), abs(self.offset + self.pitch)) + radius
-        return math.sqrt(max(w * w - most * most, 0.0)), w
-
-    def along(self, w: Number, pose: Pose, before: Number, sine: Number, cosine: Number) -> Number:
-        """Square of rho at which a layer w is touched, from what is known `before` of `side R (sin a, cos a)`."""
-        del before, cosine
-        across = self._beside(pose) - sine
-        return w * w - across * across
+    def reach(self, radius: float) -> tuple[float, float]:
+        """Least and greatest distance rho, mm, at which a roller of a radius may touch the metal above the floor."""
+        del radius
+        return 0.0, self.radius
 
     def passing(self, radius: float) -> tuple[float, float]:
         """Angles on the turret, rad, between which a roller of a radius, mm, may touch the cam, and a little more."""
@@ -303,9 +311,9 @@ class Globoid:
     def layer(self, place: Vector) -> tuple[Number, Vector]:
         """Layers of places along e_r, e_t and k, mm (n,), and the unit normals of these, towards greater w."""
         x, y, z = place
-        r = (x * x + y * y) ** 0.5
+        r = length_of(x, y)
         inwards, up = self.distance - r, z - self.height
-        w = (inwards * inwards + up * up) ** 0.5
+        w = length_of(inwards, up)
         inverse = w**-1
         cosine, turn = inwards * inverse * -1.0, r**-1
         return w, (cosine * x * turn, cosine * y * turn, up * inverse)
@@ -339,16 +347,9 @@ class Globoid:
         far = max(self.height, self.length - self.height)
         return self.distance - math.sqrt(max(w * w - far * far, 0.0))
 
-    def reach(self, w: float, radius: float) -> tuple[float, float]:
-        """Least and greatest distance rho, mm, at which a roller of a radius may touch a layer w, mm."""
-        return max(w - radius, 0.0), w + radius
-
-    def along(self, w: Number, pose: Pose, before: Number, sine: Number, cosine: Number) -> Number:
-        """Square of rho at which a layer w is touched, from what is known `before` of `side R (sin a, cos a)`."""
-        inwards = before * pose.cosine - cosine * pose.sine
-        x = self.distance - inwards
-        more = sine * sine * ((x * x + sine * sine) ** 0.5 + x) ** -1
-        return w * w - cosine * cosine + more * (inwards * 2.0 - more)
+    def reach(self, radius: float) -> tuple[float, float]:
+        """Least and greatest distance rho, mm, at which a roller of a radius may touch the metal above the floor."""
+        return max(self.radius - radius, 0.0), self.radius + self.depth + radius
 
     def passing(self, radius: float) -> tuple[float, float]:
         """Angles on the turret, rad, between which a roller of a radius, mm, may touch the cam, and a little more."""

@@ -87,7 +87,9 @@ def test_sound_savings_are_accepted(turret, tmp_path):
         assert verdict.ok, [check for check in verdict.checks if not check.ok]
     rng = np.random.default_rng(5)
     order = rng.permutation(len(corners))
-    turned = np.array([np.roll(row, by) for row, by in zip(corners[order], rng.integers(0, 3, len(order)))])
+    turned = np.array(
+        [np.roll(row, by) for row, by in zip(corners[order], rng.integers(0, 3, len(order)), strict=True)]
+    )
     path = written(tmp_path / "shuffled.stl", points, turned)
     verdict = verify(path, turret.intent, Limits(TOLERANCE))
     assert verdict.ok, [check for check in verdict.checks if not check.ok]
@@ -127,7 +129,7 @@ FAULTS = {
     "upside down": (lambda p, c: (p * [1.0, -1.0, -1.0] + [0.0, 0.0, 70.0], c), {"contour"}),
     "scaled": (lambda p, c: (1.001 * p, c), {"contour", "blank"}),
     "turned": (lambda p, c: (turned(p, math.radians(0.1)), c), {"contour"}),
-    "raised": (lambda p, c: (p + [0.0, 0.0, 0.03], c), {"contour", "ends"}),
+    "raised": (lambda p, c: (p + np.array([0.0, 0.0, 0.03]), c), {"contour", "ends"}),
     "inside out": (lambda p, c: (p, c[:, ::-1]), {"watertight"}),
     "open": (lambda p, c: (p, c[1:]), {"watertight"}),
 }

@@ -35,7 +35,7 @@ def test_digits_of_the_worked_cases_are_touched_there(turret, theta, side, place
     rollers, points = Rollers(turret.intent, 1e-4), places(place)
     worst = rollers.worst(points)
     assert abs(worst.excess[0]) < 1e-5
-    assert -1e-9 < worst.excess[0] + worst.open[0]
+    assert worst.excess[0] + worst.open[0] > -1e-9
     assert abs(math.degrees(worst.theta[0]) % 360.0 - theta) < 0.02
     assert math.copysign(1.0, rollers.at(points, worst.theta).d[0]) == side
 
@@ -61,7 +61,8 @@ def test_the_least_of_many_angles_is_found(turret):
     count = 300
     low, high = turret.intent.ends
     z, phi = rng.uniform(low, high, count), rng.uniform(0.0, TURN, count)
-    r = np.array([turret.form.rims(depth, np.array([at]))[0] for depth, at in zip(rng.uniform(0.0, 13.0, count), z)])
+    depths = rng.uniform(0.0, 13.0, count)
+    r = np.array([turret.form.rims(depth, np.array([at]))[0] for depth, at in zip(depths, z, strict=True)])
     points = np.stack([r * np.cos(phi), r * np.sin(phi), z], axis=-1)
     rollers = Rollers(turret.intent, 1e-3)
     worst = rollers.worst(points)

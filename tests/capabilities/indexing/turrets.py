@@ -177,9 +177,10 @@ def closed(rings):
     i, j = np.meshgrid(np.arange(m - 1), np.arange(n), indexing="ij")
     a, b, c, d = (((i + u) * n + (j + v) % n).ravel() for u, v in ((0, 0), (1, 0), (1, 1), (0, 1)))
     ring = np.arange(n)
+    last = ring + (m - 1) * n
     ends = [
         np.stack([ring, np.roll(ring, -1), np.full(n, m * n)], axis=1),
-        np.stack([np.roll(ring, -1), ring, np.full(n, m * n + 1)], axis=1) + [[(m - 1) * n, (m - 1) * n, 0]],
+        np.stack([np.roll(last, -1), last, np.full(n, m * n + 1)], axis=1),
     ]
     sides = [np.stack([a, b, c], axis=1), np.stack([a, c, d], axis=1)]
     points = np.concatenate([rings.reshape(-1, 3), rings[0].mean(axis=0)[None], rings[-1].mean(axis=0)[None]])
