@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from abc import ABC, abstractmethod
-from typing import TYPE_CHECKING, ClassVar, NamedTuple
+from typing import TYPE_CHECKING, ClassVar, Literal, NamedTuple
 
 import numpy as np
 
@@ -15,8 +15,7 @@ from kin.numeric.records import dataclass
 if TYPE_CHECKING:
     from collections.abc import Callable
 
-    from camgeo.capabilities.indexing.index_recipe import Roller
-    from kin.indexing.intent import Form
+    from kin.indexing.forms import Form
     from kin.numeric.arrays import Array
 
 ARC = 24  # chords of an arc in a drawing
@@ -35,6 +34,18 @@ class Drawn(NamedTuple):
     hub: Ring
     rollers: tuple[Ring, ...]
     way: int
+
+
+@dataclass(frozen=True)
+class Roller:
+    """A cylindrical roller that bears from `inner` to `outer` along its axis, mm.
+
+    These are distances from the axis of a barrel; of a globoid from that of its turret.
+    """
+
+    radius: float
+    inner: float
+    outer: float
 
 
 @dataclass(frozen=True)
@@ -102,7 +113,7 @@ class BarrelTurret(Turret):
     unrolls: ClassVar[bool] = True
     pitch: float
     offset: float
-    side: int
+    side: Literal[-1, 1]
 
     @property
     def sizes(self) -> dict[str, float]:
