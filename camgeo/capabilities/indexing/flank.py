@@ -108,9 +108,7 @@ class Flank:
         a1, a2 = ((cosine * b - sine * a) * inverse for a, b in ((speed.a1, speed.b1), (speed.a2, speed.b2)))
         turn, bend = self.form.tilt(pose)[0] - a1, w * a2 * -1.0
         along, beside = w + turn * reach, self.form.slip(pose, rho)[0] + bend * reach
-        return Touch(
-            sine, cosine, w, w1, w2, a1, a2, turn, bend, along, beside, along + a2 * beside * reach
-        )
+        return Touch(sine, cosine, w, w1, w2, a1, a2, turn, bend, along, beside, along + a2 * beside * reach)
 
     def place(self, pose: Pose, rho: Number, sine: Number, cosine: Number) -> Vector:
         """Places of contacts along e_r, e_t and k, mm, of arrays or balls."""

@@ -7,7 +7,9 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from camgeo.capabilities.indexing.spans import TrackError, demand_clear, demand_ends
 from camgeo.capabilities.indexing.tracks import rib_thickness, track
+from camgeo.capabilities.indexing.undercut import demand_regular
 from camgeo.common.rounding import downward
 from camgeo.curve.curve import CurveError
 
@@ -54,6 +56,46 @@ def demand_sound(design: IndexDesign) -> None:
     if not thin > 0.0:
         problem = f"the rollers leave no rib between them, near {math.degrees(at) % 360.0:.6g} degrees"
         raise design.error(ROLLER, problem, _smaller(design, lambda other: rib_thickness(other)[0] > 0.0))
+    _demand_proved(design)
+
+
+def _demand_proved(design: IndexDesign) -> None:
+    """Raise RecipeErrors where the track does not go from end face to end face, or undercut is not proved away."""
+    try:
+        demand_ends(design.flanks)
+        for flank in design.flanks.values():
+            demand_clear(flank)
+    except TrackError as error:
+        length = _largest(design.recipe.length, lambda length: _passes(design.shortened(length)))
+        mm, units = design.recipe.mm, design.recipe.units
+        remedy = error.remedy
+        if length > 0.0:
+            remedy = f"give at most {downward(length / mm, 4)} {units}, with the turret's axis in its middle"
+        where = f"near {math.degrees(error.parameter) % 360.0:.6g} degrees"
+        raise design.error("part.length", f"{error}, {where}", remedy) from error
+    try:
+        for flank in design.flanks.values():
+            demand_regular(flank)
+    except CurveError as error:
+        where = f"near {math.degrees(error.parameter) % 360.0:.6g} degrees"
+        raise design.error(ROLLER, f"{error}, {where}", _smaller(design, _proved)) from error
+
+
+def _passes(design: IndexDesign) -> bool:
+    try:
+        demand_ends(design.flanks)
+    except CurveError:
+        return False
+    return True
+
+
+def _proved(design: IndexDesign) -> bool:
+    try:
+        for flank in design.flanks.values():
+            demand_regular(flank)
+    except CurveError:
+        return False
+    return True
 
 
 def _demand_forward(design: IndexDesign, name: str) -> None:

@@ -199,12 +199,7 @@ def test_derivatives_and_d_by_differences(form: str) -> None:
     assert np.abs(np.sum(normal * two, axis=1)).max() < 1e-7
     twice = (
         (at(theta + e, rho) + at(theta - e, rho) - 2.0 * at(theta, rho)) / e**2,
-        (
-            at(theta + e, rho + e)
-            - at(theta + e, rho - e)
-            - at(theta - e, rho + e)
-            + at(theta - e, rho - e)
-        )
+        (at(theta + e, rho + e) - at(theta + e, rho - e) - at(theta - e, rho + e) + at(theta - e, rho - e))
         / (4.0 * e * e),
         (at(theta, rho + e) + at(theta, rho - e) - 2.0 * at(theta, rho)) / e**2,
     )
@@ -272,7 +267,7 @@ part: {length: 60}
 def test_a_track_that_leaves_at_the_side() -> None:
     law = law_of(60.0, 150.0)
     flank = Flank(Barrel(50.0, 13.0, 57.0, 60.0, 1, 57.0, 114.0), law, math.radians(-30.0), 9.0, -1)
-    with pytest.raises(TrackError, match="does not reach the upper end face"):
+    with pytest.raises(TrackError, match="does not reach the lower end face"):
         span_of(flank, np.array([37.0]))
     span_of(replace(flank, form=Barrel(50.0, 13.0, 57.0, 60.0, 1, 40.0, 80.0)), np.array([37.0]))
 
