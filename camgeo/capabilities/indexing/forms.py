@@ -148,7 +148,7 @@ class Barrel:
 
     def twist(self, pose: Pose, sine: Number, cosine: Number) -> Number:
         """Part along g of the derivative of tau by theta, for the contact's angle by sine and cosine."""
-        return cosine * -1.0 + pose.sine * 0.0
+        return cosine * -1.0 + (pose.sine + sine) * 0.0
 
     def axes(self, pose: Pose, sine: Number, cosine: Number) -> tuple[Vector, Vector, Vector]:
         """Vectors g, tau and n along e_r, e_t and k, for the contact's angle by sine and cosine."""
@@ -195,6 +195,7 @@ class Barrel:
 
     def unit(self, w: float) -> float:
         """Length, mm, of a unit of h in a layer w, mm."""
+        del w
         return 1.0
 
     def rim(self, w: float) -> float:
