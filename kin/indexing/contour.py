@@ -14,7 +14,6 @@ from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
-from kin.indexing.faces import quartered
 from kin.indexing.rollers import Worst
 from kin.numeric.angles import TURN
 from kin.numeric.records import dataclass
@@ -24,9 +23,9 @@ if TYPE_CHECKING:
     from kin.indexing.rollers import Rollers
     from kin.numeric.arrays import Array, Indices, Mask
 
-OPEN = 0.1  # of the tolerance: what the proof may leave open
-ROUNDS = 7  # of dividing triangles
-MOST_PARTS = 400_000  # triangles at a time while dividing
+OPEN = 0.2  # of the tolerance: what the proof may leave open
+ROUNDS = 24  # of dividing triangles
+MOST_PARTS = 2_000_000  # triangles at a time while dividing
 APART = 0.1  # rad: worst angles of a triangle's corners that are farther apart are not of one place of a flank
 
 
@@ -135,11 +134,22 @@ def bare(rollers: Rollers, body: Body, known: Known, which: Indices) -> Peak:
         bound = max(bound, float(off[~left].max(initial=-math.inf)))
         if not left.any():
             break
-        if turn == ROUNDS or 4 * np.count_nonzero(left) > MOST_PARTS:
+        if turn == ROUNDS or 2 * np.count_nonzero(left) > MOST_PARTS:
             bound = max(bound, float(off.max()))
             break
-        triangles, theta = quartered(triangles[left]), quartered(theta[left])
+        triangles, theta = _halved(triangles[left], theta[left])
     return Peak(value, max(0.0, bound - value), at)
+
+
+def _halved(triangles: Array, theta: Array) -> tuple[Array, Array]:
+    """Triangles (t, 3, 3) and angles at their corners (t, 3), each in two by the side over which the angle goes most."""
+    first = np.abs(theta - np.roll(theta, -1, axis=1)).argmax(axis=1)
+    rows = np.arange(len(theta))
+    a, b, c = ((triangles[rows, (first + k) % 3], theta[rows, (first + k) % 3]) for k in range(3))
+    middle = tuple(0.5 * (one + other) for one, other in zip(a, b, strict=True))
+    parts = [(a, middle, c), (middle, b, c)]
+    places, angles = (np.concatenate([np.stack([at[k] for at in part], axis=1) for part in parts]) for k in range(2))
+    return places, angles
 
 
 def _farthest(rollers: Rollers, triangles: Array, theta: Array) -> Array:
