@@ -148,6 +148,20 @@ class Rollers:
         radius = np.where(d > 0.0, self.radii[1], self.radii[0])
         return Met(one**2 + other**2 - radius**2, np.hypot(u, v), y, d, x, psi)
 
+    def near(self, points: Array, theta: Array) -> tuple[Array, Array]:
+        """Distance (n,) of points (n, 3) from what rollers sweep, mm, at one of the finest angles next to theirs (n,).
+
+        With it comes the angle of the roller, rad.
+        """
+        nodes = np.remainder(np.rint(theta / self.finest).astype(np.intp), len(self._table) // 2)[:, None]
+        y, u, v, psi = self._turned(points, nodes)
+        off = np.arctan2(v, u) - psi
+        squares = self._squares(off)
+        psi += self.intent.pitch * np.rint(off * (1.0 / self.intent.pitch))
+        one, other = self.intent.form.beside(y, u, v, psi)
+        distance = np.sqrt(one * one + other * other) - np.sqrt(squares)
+        return np.asarray(distance[:, 0]), psi[:, 0]
+
     def own(self, met: Met) -> Array:
         """Radius (n,) of the gauge of the flank that each point would be on, mm."""
         return np.asarray(np.where(met.d > 0.0, self.radii[1], self.radii[0]))
