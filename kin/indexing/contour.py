@@ -143,7 +143,7 @@ def bare(rollers: Rollers, body: Body, known: Known, which: Indices) -> Peak:
 
 
 def _halved(triangles: Array, theta: Array) -> tuple[Array, Array]:
-    """Triangles (t, 3, 3) and angles at their corners (t, 3), each in two by the side over which the angle goes most."""
+    """Triangles (t, 3, 3) and angles at their corners (t, 3), in two by the side over which the angle goes most."""
     first = np.abs(theta - np.roll(theta, -1, axis=1)).argmax(axis=1)
     rows = np.arange(len(theta))
     a, b, c = ((triangles[rows, (first + k) % 3], theta[rows, (first + k) % 3]) for k in range(3))

@@ -33,7 +33,7 @@ if TYPE_CHECKING:
 REACH = 1.25  # of the radius of a roller: an axis farther off is out of reach
 FINE = 0.1  # of the tolerance, to which a least distance is known
 PARTS = 4  # of a step, into which it is divided
-SHALLOW = 0.1  # of the tolerance: edges that reach no deeper than this below the worst corner are not looked at
+SHALLOW = 0.1  # of the tolerance: edges that reach no deeper than this below their ends are not looked at
 NEVER = 1e9  # mm^2: the excess of a point that no roller comes near
 CLOSE = 6  # of the finest steps: so near its angle the excess need not grow
 PAIRS = 60_000  # of a point and an angle, at a time
@@ -181,7 +181,7 @@ class Rollers:
         """Edges between points (n, 3), (n, 3) that are `worst` at both ends, each at its least excess.
 
         They are no longer than `longest`. Edges that are not worse than their ends are told with those, and edges that
-        cannot be worse than the worst end by more than a share of the tolerance are not looked at.
+        cannot be worse than their ends by more than a share of the tolerance are not looked at.
         """
         one, other = worst
         way = other.theta - one.theta
@@ -203,7 +203,7 @@ class Rollers:
             deeper = np.where(rate > 0.0, side**2 * (1.0 + more), np.inf)
         wide = np.minimum(wide + near + beyond, 0.25 * TURN)
         shallow = 2.0 * float(self.radii.min()) * SHALLOW * self.tolerance
-        asked = np.flatnonzero(least - opened - deeper < min(0.0, float(least.min())) - shallow)
+        asked = np.flatnonzero(deeper > shallow + np.maximum(least - opened, 0.0))
         found = Worst(at, least.copy(), opened + np.where(np.isfinite(deeper), deeper, 0.0), np.zeros_like(at))
         if not len(asked):
             return found
