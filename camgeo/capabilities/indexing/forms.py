@@ -31,7 +31,7 @@ from kin.numeric.records import dataclass
 if TYPE_CHECKING:
     from typing import Literal
 
-    from kin.numeric.arrays import Array, Indices
+    from kin.numeric.arrays import Array, Indices, Mask
 
 MARGIN = 0.1  # rad
 WIDEST = math.pi / 3.0  # polar angle that a triangle may span, however coarse
@@ -216,7 +216,7 @@ class Barrel:
             min(math.asin(min(high, 1.0)) + MARGIN, quarter),
         )
 
-    def meets(self, psi: Array, radius: float) -> Array:
+    def meets(self, psi: Array, radius: float) -> Mask:
         """Whether a roller of a radius, mm, at angles on the turret (n,), rad, is within the box about the cam (n,)."""
         y = self.offset - self.side * self.pitch * np.cos(psi)
         z = self.height + self.pitch * np.sin(psi)
@@ -322,7 +322,7 @@ class Globoid:
     def height_of(self, place: Vector) -> Array:
         """Heights h (n,) of places along e_r, e_t and k."""
         x, y, z = place
-        return np.arctan2(z - self.height, self.distance - np.hypot(x, y))
+        return np.asarray(np.arctan2(z - self.height, self.distance - np.hypot(x, y)))
 
     def points(self, phi: Array, h: Array, w: Array | float) -> Array:
         """Points (n, 3), mm, at polar angles and heights (n,) in layers w, mm."""
@@ -362,7 +362,7 @@ class Globoid:
             min(math.asin(min(high, 1.0)) + more, quarter),
         )
 
-    def meets(self, psi: Array, radius: float) -> Array:
+    def meets(self, psi: Array, radius: float) -> Mask:
         """Whether a roller at angles on the turret (n,), rad, is on the cam's side of it (n,)."""
         del radius
         return np.asarray(np.cos(psi) > 0.0)
