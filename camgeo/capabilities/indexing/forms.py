@@ -1,7 +1,7 @@
 """Forms of an indexing cam: where its layers lie, and how a roller runs past it.
 
 The cam stands still, its axis is z; the turret runs round it by the shaft angle theta. e_r, e_t and k are the axes of
-the cam's cylindrical frame at theta, and psi is the angle of a roller on the pose. Along a roller g points to rising
+the cam's cylindrical frame at theta, and psi is the angle of a roller on the turret. Along a roller g points to rising
 rho, and m is square to it and to e_t:
 
     barrel    g = e_r, m = k;   axis rho e_r + y e_t + z k,   y = offset - s l cos psi,   z = H + l sin psi
