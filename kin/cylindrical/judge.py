@@ -26,7 +26,6 @@ from kin.cylindrical.grid import angles_for
 from kin.cylindrical.lifts import degrees_over
 from kin.cylindrical.roller import Worst
 from kin.cylindrical.shoe import shoe_interference
-from kin.cylindrical.split import joined
 from kin.cylindrical.torn_edges import missing, triangles_at
 from kin.cylindrical.verdict import DrumVerdict, FlankVerdict, MotionError, Play
 from kin.cylindrical.volume import volume_within
@@ -40,6 +39,7 @@ from kin.read.checks import count_check, demand_same, units_check, unread_check
 from kin.read.errors import ReadError
 from kin.read.files import read_mesh
 from kin.read.formats import format_of
+from kin.read.mesh.split import joined
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
@@ -83,13 +83,14 @@ def verify_development(
     OSError where the disk refuses, UnitsError where the file states another unit than `units`, ValueError for a file
     that is no DXF.
     """
-    from kin.cylindrical.development import judged_line, read_lines
+    from kin.cylindrical.development import judged_line
+    from kin.read.drawing.straight import read_lines
 
     kind = format_of(path)
     if kind.name != "dxf":
         raise ValueError(f"{path.name} is no DXF")
     try:
-        stated, read = read_lines(path, lines)
+        stated, read = read_lines(path, [line.layer for line in lines])
     except ReadError as error:
         return DrumVerdict(kind.name, (about(unread_check(kind.contents, error), path.name),))
     demand_same(stated, units, path)

@@ -12,6 +12,7 @@ from attacks import (
     drums,  # needs: cylindrical
     files,
     ground,
+    indexing,  # needs: indexing
     measured,
     plates,  # needs: linear
     recipes,
@@ -79,6 +80,9 @@ WAYS: tuple[Callable[[Random, int], Attack], ...] = (
     drums.slipped,  # needs: cylindrical
     drums.wound,  # needs: cylindrical
     drums.milled,  # needs: cylindrical, milling
+    indexing.stepped,  # needs: indexing
+    indexing.unrolled,  # needs: indexing
+    indexing.slipped,  # needs: indexing
 )
 """Ways to attack, in turn."""
 

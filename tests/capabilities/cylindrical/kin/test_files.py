@@ -1,6 +1,6 @@
 """Files of drums: the same solid saved anew, subdivided, simplified or with split corners is accepted.
 
-Holds: kin.cylindrical.judge, kin.cylindrical.split.
+Holds: kin.cylindrical.judge, kin.read.mesh.split.
 """
 
 import math

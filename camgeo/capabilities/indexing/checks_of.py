@@ -1,0 +1,73 @@
+"""Checks and remarks of the exact cam: figures in the report, walls, what a wrapped drawing costs."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from camgeo.capabilities.indexing.figures import bears
+from camgeo.capabilities.indexing.keys import LENGTH, RIB
+from camgeo.measures.placed import Figure, figure_check, limit_checks
+from camgeo.measures.rule_remark import RuleRemark
+from camgeo.recipe.figures import LEAST_WALL, PRESSURE_ANGLE
+from kin.numeric.check import Check, failed
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+    from camgeo.capabilities.indexing.design import IndexDesign
+
+STEEP = 45.0  # degrees, by rule of thumb for a follower that swings
+ROUNDING = 1e-9  # mm: a wall that is less by no more holds
+
+
+def design_checks(design: IndexDesign, figures: Sequence[Figure]) -> list[Check]:
+    """Checks that need no file; a figure that nothing limits is reported without a limit."""
+    known = {figure.name: figure for figure in figures}
+    checks = [figure_check(PRESSURE_ANGLE, known[PRESSURE_ANGLE], None, "at_most", at_unit="deg")]
+    length = figure_check(LENGTH, known[LENGTH], 0.0, "at_least", at_unit="deg")
+    if known[LENGTH].value > 0.0:
+        checks.append(length)
+    else:
+        why = "no roller bears on a flank there, and the turret is free: give more stops, or a longer cam"
+        checks.append(Check(**{**vars(failed(LENGTH, why, unit="mm", limit=0.0)), "at": length.at}))
+    checks.append(figure_check(RIB, known[RIB], 0.0, "at_least", at_unit="deg"))
+    wall, where = min(walls(design))
+    least = design.recipe.part.wall
+    holds = wall > 0.0 if least is None else wall >= least - ROUNDING
+    return [*checks, Check(LEAST_WALL, holds, wall, least or 0.0, "mm", sense="at_least", detail=where)]
+
+
+def walls(design: IndexDesign) -> list[tuple[float, str]]:
+    """Walls of a cam, mm, each with what it stands between; without a bore its core where that is thinnest."""
+    core = design.recipe.turret.core(design.recipe.form.floor)
+    if design.bore is None:
+        return [(2.0 * core, "across the core within the floor")]
+    reach = float(np.hypot(*design.bore.outline.points.T).max())
+    return [(core - reach, "between the bore and the floor")]
+
+
+def limits_held(design: IndexDesign, figures: Sequence[Figure], checks: Sequence[Check]) -> list[Check]:
+    """Checks of the figures that the recipe limits, those of the least wall among them."""
+    wall = next((check for check in checks if check.name == LEAST_WALL and check.value is not None), None)
+    more = [] if wall is None or wall.value is None else [Figure(LEAST_WALL, wall.value, "mm")]
+    return limit_checks(design.recipe.limits, [*figures, *more], "deg")
+
+
+def remarks_on(design: IndexDesign, figures: Sequence[Figure]) -> tuple[RuleRemark, ...]:
+    """Remarks on what is unusual."""
+    recipe, known = design.recipe, {figure.name: figure for figure in figures}
+    remarks = []
+    steep = known[PRESSURE_ANGLE]
+    limited = {bound.figure for bound in recipe.limits}
+    if steep.value > STEEP and PRESSURE_ANGLE not in limited:
+        sentence = f"the pressure angle of the best placed roller reaches {steep.value:.4g} degrees, {STEEP:g} is usual"
+        remarks.append(RuleRemark(PRESSURE_ANGLE, steep.value, STEEP, "deg", sentence, steep.at))
+    kept = design.motion.kept
+    remarks += [] if kept is None else [RuleRemark(name, None, None, "", told) for name, told in kept.remarks]
+    pressure, bearable = known.get("contact-pressure"), bears(design)
+    if pressure is not None and bearable is not None and pressure.value > bearable:
+        sentence = f"the contact's pressure reaches {pressure.value:.4g} N/mm^2, the materials bear {bearable:.4g}"
+        remarks.append(RuleRemark("contact-pressure", pressure.value, bearable, pressure.unit, sentence, pressure.at))
+    return tuple(remarks)

@@ -1,0 +1,83 @@
+"""An indexing cam before any file: its motion over all turns, its flanks, and the bore."""
+
+from __future__ import annotations
+
+import math
+from functools import cached_property
+from typing import TYPE_CHECKING
+
+from camgeo.capabilities.indexing.flank import Flank
+from camgeo.part.body import bore_of
+from kin.numeric.lengths import in_unit
+from kin.numeric.records import dataclass, replace
+
+if TYPE_CHECKING:
+    from camgeo.capabilities.indexing.index_recipe import IndexRecipe
+    from camgeo.capabilities.indexing.law import IndexLaw
+    from camgeo.part.shapes import Opening
+    from camgeo.schema.errors import RecipeErrors
+    from kin.law.sources.motion import Motion
+
+ROUNDING = 1e-9  # of a turn
+
+
+@dataclass(frozen=True, eq=False)
+class IndexDesign:
+    """An indexing cam before any file: its recipe, the motion of one turn, and the motion over any number of turns.
+
+    All is as for a cam that turns clockwise, seen from +z; `rotation: ccw` mirrors it (y -> -y).
+    """
+
+    recipe: IndexRecipe
+    motion: Motion
+    law: IndexLaw
+
+    @cached_property
+    def flanks(self) -> dict[str, Flank]:
+        """Flanks by name: `lower` with the metal below, `upper` with the metal above, of its own larger roller."""
+        recipe = self.recipe
+        sizes = {"lower": recipe.roller.radius, "upper": recipe.roller.radius + recipe.clearance}
+        sides = {"lower": -1, "upper": 1}
+        return {name: Flank(recipe.form, self.law, recipe.start, sizes[name], sides[name]) for name in sizes}
+
+    def resized(self, radius: float) -> IndexDesign:
+        """The same cam for rollers of another radius, mm."""
+        recipe = self.recipe
+        return replace(self, recipe=replace(recipe, roller=replace(recipe.roller, radius=radius)))
+
+    def shortened(self, length: float) -> IndexDesign:
+        """The same cam of another length, mm, with the turret's axis in its middle."""
+        recipe, height = self.recipe, 0.5 * length
+        form, turret = replace(recipe.form, length=length, height=height), replace(recipe.turret, height=height)
+        return replace(self, recipe=replace(recipe, form=form, turret=turret))
+
+    @property
+    def largest(self) -> float:
+        """Radius of the roller of that flank, mm, whose roller is larger."""
+        return self.recipe.roller.radius + max(self.recipe.clearance, 0.0)
+
+    @property
+    def spanned(self) -> tuple[float, float]:
+        """Angles of the turret, rad, between which a roller is in touch with the cam."""
+        return self.recipe.turret.spanned(self.largest, self.recipe.form.blank, self.recipe.length)
+
+    @cached_property
+    def turns(self) -> range:
+        """Whole turns after which a roller may touch the cam, of the roller that stands at the start after none."""
+        (low, high), (least, most) = self.spanned, self.motion.range
+        first = math.ceil((low - self.recipe.start - most) / self.recipe.advance - ROUNDING)
+        return range(first, math.floor((high - self.recipe.start - least) / self.recipe.advance + ROUNDING) + 1)
+
+    @property
+    def bore(self) -> Opening | None:
+        """The bore with its keyway, as for a cam that is not mirrored; None without one."""
+        return next(iter(bore_of(self.recipe.part)), None)
+
+    def error(self, field: str, problem: str, remedy: str = "") -> RecipeErrors:
+        """Error at a field of the recipe, or at the nearest one above it that is given, in the recipe's unit."""
+        return self.recipe.error(self.recipe.stated(field), in_recipe(self.recipe, problem), None, remedy)
+
+
+def in_recipe(recipe: IndexRecipe, words: str) -> str:
+    """Words with lengths in the recipe's unit."""
+    return in_unit(words, recipe.mm, "in" if recipe.units == "inch" else "mm")

@@ -1,0 +1,385 @@
+"""Forms of an indexing cam: where its layers lie, and how a roller runs past it.
+
+The cam stands still, its axis is z; the turret runs round it by the shaft angle theta. e_r, e_t and k are the axes of
+the cam's cylindrical frame at theta, and psi is the angle of a roller on the turret. Along a roller g points to rising
+rho, and m is square to it and to e_t:
+
+    barrel    g = e_r, m = k;   axis rho e_r + y e_t + z k,   y = offset - s l cos psi,   z = H + l sin psi
+    globoid   g = -cos psi e_r + sin psi k, m = sin psi e_r + cos psi k;   axis C e_r + H k + rho g
+
+A point of the axis moves against the cam by A e_t + B m, and by `slip` along g, per radian (the equation of meshing is
+solved in `camgeo.capabilities.indexing.flank`):
+
+    barrel    A = rho + y',         B = z',         slip = -y
+    globoid   A = C - rho cos psi,  B = rho psi',   slip = 0
+
+A layer of a barrel is a cylinder about the cam's axis, of one radius; one of a globoid is a torus about it, of one
+distance w from the circle of the radius C at the height H. On it stand the polar angle phi and a height h: z of a
+barrel, mm; of a globoid the angle on the turret, rad. Numbers are arrays or balls (`kin.numeric.interval`).
+"""
+
+from __future__ import annotations
+
+import math
+from typing import TYPE_CHECKING, Any, NamedTuple, TypeAlias
+
+import numpy as np
+
+from kin.numeric.interval import Ball, atan2, sin_cos
+from kin.numeric.records import dataclass
+
+if TYPE_CHECKING:
+    from typing import Literal
+
+    from kin.numeric.arrays import Array, Indices, Mask
+
+MARGIN = 0.1  # rad
+WIDEST = math.pi / 3.0  # polar angle that a triangle may span, however coarse
+LESS = 0.95  # times the span of a triangle that is too wide
+BESIDE = 2.1  # turns of the normal that count, as in `camgeo.capabilities.indexing.bends`
+Number: TypeAlias = Any
+"""An array, or balls."""
+Vector: TypeAlias = tuple[Number, Number, Number]
+"""Parts of a vector along e_r, e_t and k, or along g, tau and n, each an array or balls."""
+
+
+def directed(a: Number, b: Number, inverse: Number) -> tuple[Number, Number]:
+    """Sine and cosine of the angle of (a, b), whose length has an inverse; balls no wider than that angle has them."""
+    return sin_cos(atan2(b, a)) if isinstance(a, Ball) else (b * inverse, a * inverse)
+
+
+def length_of(a: Number, b: Number) -> Number:
+    """Length of (a, b), of arrays or balls."""
+    square = a**2 + b**2
+    if isinstance(square, Ball):  # which rounding may have led below 0
+        low, high = square.bounds()
+        return Ball.between(np.maximum(low, 0.0), high) ** 0.5
+    return square**0.5
+
+
+class Speed(NamedTuple):
+    """How an axis moves: A and B, mm, with derivatives by theta (1) and by rho (2) up to the second."""
+
+    a: Number
+    a1: Number
+    a2: Number
+    a11: Number
+    a12: Number
+    b: Number
+    b1: Number
+    b2: Number
+    b11: Number
+    b12: Number
+
+
+class Pose(NamedTuple):
+    """A turret at shaft angles: sine and cosine of psi, and its first three derivatives by the shaft angle, (n,)."""
+
+    sine: Number
+    cosine: Number
+    rate: Number
+    second: Number
+    third: Number
+
+    def of(self, index: Indices) -> Pose:
+        """The turret at some of the shaft angles."""
+        return Pose(*(part[index] for part in self))
+
+    @staticmethod
+    def at(rows: Number, start: float) -> Pose:
+        """The turret whose roller stands at `start`, rad, where S is 0, from rows (4, n) of S, rad, or of balls."""
+        psi = rows[0] + start
+        sine, cosine = sin_cos(psi) if isinstance(psi, Ball) else (np.sin(psi), np.cos(psi))
+        return Pose(sine, cosine, rows[1], rows[2], rows[3])
+
+
+@dataclass(frozen=True)
+class Barrel:
+    """A barrel: radius of the blank and depth of the track, pose's axis, pitch radius and height; its length, mm.
+
+    `side` is 1 where the barrel's surface runs from the turret's axis to the contact (trailing), -1 where it runs the
+    other way (leading).
+    """
+
+    radius: float
+    depth: float
+    offset: float
+    pitch: float
+    side: Literal[-1, 1]
+    height: float
+    length: float
+
+    @property
+    def blank(self) -> float:
+        """Layer of the blank, mm."""
+        return self.radius
+
+    @property
+    def floor(self) -> float:
+        """Layer of the track's floor, mm."""
+        return self.radius - self.depth
+
+    def speed(self, pose: Pose, rho: Number) -> Speed:
+        """How the roller's axis moves at distances rho along it."""
+        sine, cosine, p1, p2, p3 = pose
+        reach, side = self.pitch, float(self.side)
+        cube = p1 * p1 * p1
+        y1, z1 = sine * p1 * (side * reach), cosine * p1 * reach
+        y2 = (cosine * p1 * p1 + sine * p2) * (side * reach)
+        z2 = (cosine * p2 - sine * p1 * p1) * reach
+        y3 = (cosine * p1 * p2 * 3.0 - sine * cube + sine * p3) * (side * reach)
+        z3 = (cosine * p3 - sine * p1 * p2 * 3.0 - cosine * cube) * reach
+        nothing = rho * 0.0
+        return Speed(rho + y1, y2, nothing + 1.0, y3, nothing, z1, z2, nothing, z3, nothing)
+
+    def slip(self, pose: Pose, rho: Number) -> tuple[Number, Number]:
+        """Speed of the axis along itself, mm per rad, and its derivative by theta."""
+        return (
+            rho * 0.0 - self._beside(pose),
+            pose.sine * pose.rate * (-self.side * self.pitch),
+        )
+
+    def _beside(self, pose: Pose) -> Number:
+        return pose.cosine * (-self.side * self.pitch) + self.offset
+
+    def tilt(self, pose: Pose) -> tuple[Number, Number]:
+        """How fast the normal turns with the frame beyond the turn of its own angle, and that by theta: nothing."""
+        return pose.sine * 0.0, pose.sine * 0.0
+
+    def twist(self, pose: Pose, sine: Number, cosine: Number) -> Number:
+        """Part along g of the derivative of tau by theta, for the contact's angle by sine and cosine."""
+        return cosine * -1.0 + (pose.sine + sine) * 0.0
+
+    def axes(self, pose: Pose, sine: Number, cosine: Number) -> tuple[Vector, Vector, Vector]:
+        """Vectors g, tau and n along e_r, e_t and k, for the contact's angle by sine and cosine."""
+        nothing = sine * 0.0 + pose.sine * 0.0
+        one = nothing + 1.0
+        return (one, nothing, nothing), (nothing, cosine, sine), (nothing, sine * -1.0, cosine)
+
+    def axis(self, pose: Pose, rho: Number) -> Vector:
+        """Places of the roller's axis along e_r, e_t and k, mm."""
+        return rho, rho * 0.0 + self._beside(pose), pose.sine * self.pitch + self.height + rho * 0.0
+
+    def lean(self, psi: Array) -> Array:
+        """Angle of the roller's way against m, towards -e_t, rad (n,)."""
+        return np.asarray(self.side * psi)
+
+    def lever(self, rho: Array) -> Array:
+        """Distance of a contact from the turret's axis, mm (n,), at distances rho along the roller."""
+        return np.full_like(rho, self.pitch)
+
+    def layer(self, place: Vector) -> tuple[Number, Vector]:
+        """Layers of places along e_r, e_t and k, mm (n,), and the unit normals of these, towards greater w."""
+        x, y, z = place
+        r = length_of(x, y)
+        inverse = r**-1
+        return r, (x * inverse, y * inverse, z * 0.0)
+
+    def height_of(self, place: Vector) -> Array:
+        """Heights h (n,) of places along e_r, e_t and k."""
+        return np.asarray(place[2])
+
+    def points(self, phi: Array, h: Array, w: Array | float) -> Array:
+        """Points (n, 3), mm, at polar angles and heights (n,) in layers w, mm."""
+        return np.column_stack([w * np.cos(phi), w * np.sin(phi), h])
+
+    def chart(self, points: Array) -> tuple[Array, Array, Array]:
+        """Polar angle, height and layer, (n,) each, of points (n, 3), mm."""
+        x, y, z = points.T
+        return np.arctan2(y, x), z, np.hypot(x, y)
+
+    def ends(self, w: Array | float) -> tuple[Array, Array]:
+        """Heights h of the lower and of the upper end face in layers w, mm."""
+        low = np.zeros_like(np.asarray(w, dtype=float))
+        return low, low + self.length
+
+    def unit(self, w: float) -> float:
+        """Length, mm, of a unit of h in a layer w, mm."""
+        del w
+        return 1.0
+
+    def rim(self, w: float) -> float:
+        """Greatest distance from the cam's axis, mm, of a layer w, mm, between the end faces."""
+        return w
+
+    def reach(self, radius: float) -> tuple[float, float]:
+        """Least and greatest distance rho, mm, at which a roller of a radius may touch the metal above the floor."""
+        del radius
+        return 0.0, self.radius
+
+    def passing(self, radius: float) -> tuple[float, float]:
+        """Angles on the turret, rad, between which a roller of a radius, mm, may touch the cam, and a little more."""
+        low, high = (-self.height - radius) / self.pitch, (self.length - self.height + radius) / self.pitch
+        quarter = 0.5 * math.pi
+        return (
+            max(math.asin(max(low, -1.0)) - MARGIN, -quarter),
+            min(math.asin(min(high, 1.0)) + MARGIN, quarter),
+        )
+
+    def meets(self, psi: Array, radius: float) -> Mask:
+        """Whether a roller of a radius, mm, at angles on the turret (n,), rad, is within the box about the cam (n,)."""
+        y = self.offset - self.side * self.pitch * np.cos(psi)
+        z = self.height + self.pitch * np.sin(psi)
+        beside = np.maximum(np.abs(y) - self.radius, 0.0)
+        above = np.maximum(np.maximum(z - self.length, -z), 0.0)
+        return np.asarray(np.hypot(beside, above) < radius)
+
+    def off(self, w: float, turn: Array, h: Array) -> Array:
+        """Bound, mm (n,), of the distance from a layer of triangles that span a polar angle, rad, and a height (n,)."""
+        del h
+        return np.asarray(2.0 * w * np.sin(0.25 * np.minimum(turn, math.pi)) ** 2)
+
+    def widest(self, w: float, tolerance: float) -> tuple[float, float]:
+        """Polar angle, rad, and height that triangles in a layer may span within a tolerance, mm."""
+        return min(4.0 * math.asin(math.sqrt(min(0.5 * tolerance / w, 0.5))), WIDEST), math.inf
+
+
+@dataclass(frozen=True)
+class Globoid:
+    """A globoid: radius of the blank's throat about the turret's axis, depth of the track, distance of both axes.
+
+    `height` is that of the turret's axis over the lower face, and `length` that of the cam, all in mm.
+    """
+
+    radius: float
+    depth: float
+    distance: float
+    height: float
+    length: float
+
+    @property
+    def blank(self) -> float:
+        """Layer of the blank, mm."""
+        return self.radius
+
+    @property
+    def floor(self) -> float:
+        """Layer of the track's floor, mm."""
+        return self.radius + self.depth
+
+    def speed(self, pose: Pose, rho: Number) -> Speed:
+        """How the roller's axis moves at distances rho along it."""
+        sine, cosine, p1, p2, p3 = pose
+        nothing = rho * 0.0
+        return Speed(
+            self.distance - rho * cosine,
+            rho * sine * p1,
+            nothing - cosine,
+            rho * (cosine * p1 * p1 + sine * p2),
+            nothing + sine * p1,
+            rho * p1,
+            rho * p2,
+            nothing + p1,
+            rho * p3,
+            nothing + p2,
+        )
+
+    def slip(self, pose: Pose, rho: Number) -> tuple[Number, Number]:
+        """Speed of the axis along itself, mm per rad, and its derivative by theta: none."""
+        nothing = rho * 0.0 + pose.sine * 0.0
+        return nothing, nothing
+
+    def tilt(self, pose: Pose) -> tuple[Number, Number]:
+        """How fast the normal turns with the frame beyond the turn of its own angle, and that by theta."""
+        return pose.sine, pose.cosine * pose.rate
+
+    def twist(self, pose: Pose, sine: Number, cosine: Number) -> Number:
+        """Part along g of the derivative of tau by theta, for the contact's angle by sine and cosine."""
+        return cosine * pose.cosine - pose.rate * sine
+
+    def axes(self, pose: Pose, sine: Number, cosine: Number) -> tuple[Vector, Vector, Vector]:
+        """Vectors g, tau and n along e_r, e_t and k, for the contact's angle by sine and cosine."""
+        up, out = pose.sine, pose.cosine
+        nothing = sine * 0.0 + up * 0.0
+        return (
+            (nothing - out, nothing, nothing + up),
+            (sine * up, cosine + nothing, sine * out),
+            (cosine * up, sine * -1.0 + nothing, cosine * out),
+        )
+
+    def axis(self, pose: Pose, rho: Number) -> Vector:
+        """Places of the roller's axis along e_r, e_t and k, mm."""
+        return self.distance - rho * pose.cosine, rho * 0.0, rho * pose.sine + self.height
+
+    def lean(self, psi: Array) -> Array:
+        """Angle of the roller's way against m, towards -e_t, rad (n,): none."""
+        return np.zeros_like(psi)
+
+    def lever(self, rho: Array) -> Array:
+        """Distance of a contact from the turret's axis, mm (n,), at distances rho along the roller."""
+        return rho
+
+    def layer(self, place: Vector) -> tuple[Number, Vector]:
+        """Layers of places along e_r, e_t and k, mm (n,), and the unit normals of these, towards greater w."""
+        x, y, z = place
+        r = length_of(x, y)
+        inwards, up = self.distance - r, z - self.height
+        w = length_of(inwards, up)
+        inverse = w**-1
+        cosine, turn = inwards * inverse * -1.0, r**-1
+        return w, (cosine * x * turn, cosine * y * turn, up * inverse)
+
+    def height_of(self, place: Vector) -> Array:
+        """Heights h (n,) of places along e_r, e_t and k."""
+        x, y, z = place
+        return np.asarray(np.arctan2(z - self.height, self.distance - np.hypot(x, y)))
+
+    def points(self, phi: Array, h: Array, w: Array | float) -> Array:
+        """Points (n, 3), mm, at polar angles and heights (n,) in layers w, mm."""
+        r = self.distance - w * np.cos(h)
+        return np.column_stack([r * np.cos(phi), r * np.sin(phi), self.height + w * np.sin(h)])
+
+    def chart(self, points: Array) -> tuple[Array, Array, Array]:
+        """Polar angle, height and layer, (n,) each, of points (n, 3), mm."""
+        x, y, z = points.T
+        inwards, up = self.distance - np.hypot(x, y), z - self.height
+        return np.arctan2(y, x), np.arctan2(up, inwards), np.hypot(inwards, up)
+
+    def ends(self, w: Array | float) -> tuple[Array, Array]:
+        """Heights h of the lower and of the upper end face in layers w, mm."""
+        return np.arcsin(-self.height / np.asarray(w)), np.arcsin((self.length - self.height) / np.asarray(w))
+
+    def unit(self, w: float) -> float:
+        """Length, mm, of a unit of h in a layer w, mm."""
+        return w
+
+    def rim(self, w: float) -> float:
+        """Greatest distance from the cam's axis, mm, of a layer w, mm, between the end faces."""
+        far = max(self.height, self.length - self.height)
+        return self.distance - math.sqrt(max(w * w - far * far, 0.0))
+
+    def reach(self, radius: float) -> tuple[float, float]:
+        """Least and greatest distance rho, mm, at which a roller of a radius may touch the metal above the floor."""
+        return max(self.radius - radius, 0.0), self.radius + self.depth + radius
+
+    def passing(self, radius: float) -> tuple[float, float]:
+        """Angles on the turret, rad, between which a roller of a radius, mm, may touch the cam, and a little more."""
+        least = min(self.radius, self.radius + self.depth) - radius
+        low, high = -self.height / least, (self.length - self.height) / least
+        more, quarter = MARGIN + math.asin(min(radius / least, 1.0)), 0.5 * math.pi
+        return (
+            max(math.asin(max(low, -1.0)) - more, -quarter),
+            min(math.asin(min(high, 1.0)) + more, quarter),
+        )
+
+    def meets(self, psi: Array, radius: float) -> Mask:
+        """Whether a roller at angles on the turret (n,), rad, is on the cam's side of it (n,)."""
+        del radius
+        return np.asarray(np.cos(psi) > 0.0)
+
+    def off(self, w: float, turn: Array, h: Array) -> Array:
+        """Bound, mm (n,), of the distance from a layer of triangles that span a polar angle, rad, and a height (n,).
+
+        A torus is a saddle there: both parts of the second order are of opposite sense, and each is held by itself.
+        """
+        r, steep = self.rim(w), min(w, max(self.height, self.length - self.height))
+        whole = (r * turn * turn + 2.0 * steep * turn * h + w * h * h) / 8.0
+        plain = np.maximum(r * turn * turn, w * h * h) / 8.0
+        return np.asarray(plain + BESIDE * (turn + h) * whole)
+
+    def widest(self, w: float, tolerance: float) -> tuple[float, float]:
+        """Polar angle, rad, and height that triangles in a layer may span within a tolerance, mm."""
+        turn, h = (min(math.sqrt(8.0 * tolerance / size), WIDEST) for size in (self.rim(w), w))
+        while float(self.off(w, np.array(turn), np.array(h))) > tolerance:
+            turn, h = LESS * turn, LESS * h
+        return turn, h

@@ -1,0 +1,277 @@
+"""Keys of the recipe of an indexing cam, with what they take, their defaults and what they mean."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from camgeo.formats.options import RECIPE_UNITS, SOLID_UNITS, TOLERANCE
+from camgeo.motions.inputs import Input
+from camgeo.motions.motion import motion_field
+from camgeo.part import bore
+from camgeo.part.keyway import FEATURE as KEYWAY
+from camgeo.part.part import DENSITY
+from camgeo.recipe.export import export_of
+from camgeo.recipe.figure_bounds import limits_of
+from camgeo.recipe.figures import LEAST_WALL, PRESSURE_ANGLE
+from camgeo.recipe.keys import CORE
+from camgeo.recipe.machining import MOST_RPM
+from camgeo.recipe.materials import material
+from camgeo.registry.formats import FORMATS, Form
+from camgeo.registry.slot import NO_CHECK
+from camgeo.schema.errors import quote
+from camgeo.schema.fields import MOST, Field, FieldTable, Kind, OwnForm, length, mapping
+from camgeo.schema.json_schema import number_schema
+from camgeo.schema.read_scalar import read_numeric
+from camgeo.schema.yaml_source import Scalar, join
+from kin.numeric.records import replace
+
+if TYPE_CHECKING:
+    from camgeo.registry.formats import Format
+    from camgeo.schema.fields import Schema
+    from camgeo.schema.reader import Reader
+    from camgeo.schema.yaml_source import Node
+
+FLOOR_GAP = 0.5  # mm that a roller stands off the floor where the recipe does not say where it ends
+LEAST_STOPS, MOST_STOPS = 2, 60
+MOST_RADII = 20  # of one development
+MOST_INERTIA = 1e6  # kg m^2
+OUTER = "outer"
+MIDDLE, INNER, OUTSIDE, ANY = (f"{PRESSURE_ANGLE}-{word}" for word in ("middle", "inner", "outer", "any"))
+LENGTH, RIB, LEAST, MOST_ENGAGED = "contact-length", "rib-thickness", "engaged-least", "engaged-most"
+
+BARREL = mapping(
+    "barrel",
+    "a barrel: the rollers' axes are parallel to the turret's axis, which is parallel to a radius of the cam",
+    length("radius", "radius of the blank", required=True),
+    Field(
+        "offset",
+        Kind.LENGTH,
+        "distance of the turret's axis from that radius, the way the contact runs on a turning cam",
+        default="half of turret.radius times 1 + cos(180°/stops); below 0 of a leading turret",
+        at_least=-MOST,
+        at_most=MOST,
+    ),
+)
+GLOBOID = mapping(
+    "globoid",
+    "a globoid: the rollers are radial on the turret, whose axis is square to the cam's",
+    length("distance", "distance of the turret's axis from the cam's", required=True),
+    length("radius", "radius of the blank's throat about the turret's axis", required=True),
+)
+TURRET = Field(
+    "turret",
+    Kind.TABLE,
+    "the turret and its rollers, which are cylinders",
+    required=True,
+    table=FieldTable(
+        (
+            Field(
+                "stops",
+                Kind.INTEGER,
+                "stops of a whole turn of the turret, each with a roller",
+                required=True,
+                at_least=LEAST_STOPS,
+                at_most=MOST_STOPS,
+            ),
+            length("radius", "of a barrel's turret: from its axis to the rollers' axes"),
+            length("roller", "radius of a roller", required=True),
+            length(
+                "from",
+                "where a roller begins to bear: of a barrel from its axis, of a globoid from the turret's",
+                default="a barrel's floor and 0.5 mm; radius of a globoid's throat",
+            ),
+            length("to", "where it ends", default="radius of a barrel's blank; a globoid's floor less 0.5 mm"),
+            Field(
+                "height",
+                Kind.LENGTH,
+                "height of the turret's axis over the lower face",
+                default="half of part.length",
+                at_least=-MOST,
+                at_most=MOST,
+            ),
+            Field(
+                "start",
+                Kind.ANGLE,
+                "angle of a roller where the motion begins, from the plane across the cam's axis, above 0 upwards",
+                default="-180°/stops: the rib between two rollers holds the dwell",
+                at_least=-180,
+                at_most=180,
+            ),
+            Field(
+                "side",
+                Kind.CHOICE,
+                "trailing: the barrel's surface runs from the turret's axis to the contact; leading: the other way",
+                default="trailing",
+                choices=("trailing", "leading"),
+            ),
+            Field(
+                "clearance",
+                Kind.LENGTH,
+                "play of a roller, on the upper flank and square to it",
+                default="0",
+                at_least=0,
+                at_most=MOST,
+            ),
+            length("preload", "by how much the upper flank is nearer than a roller without play leaves it"),
+        )
+    ),
+)
+DRIVE = mapping(
+    "drive",
+    "how fast the cam turns, and what the turret carries",
+    Field("rpm", Kind.NUMBER, "turns of the cam a minute", above=0, at_most=MOST_RPM),
+    Field("load", Kind.NUMBER, "torque against the turret's motion, N m", above=0, at_most=MOST, unit=Kind.MOMENT),
+    Field(
+        "inertia",
+        Kind.NUMBER,
+        "moment of inertia of the turret and its load about the turret's axis, kg m²",
+        above=0,
+        at_most=MOST_INERTIA,
+    ),
+    material("material", "material of the cam"),
+    material("roller_material", "that of the rollers", default="that of the cam"),
+)
+CAM = FieldTable(
+    (
+        Field("kind", Kind.CHOICE, "a cam that advances a turret", required=True, choices=("indexing",)),
+        BARREL,
+        GLOBOID,
+        length("depth", "depth of the track below the blank", required=True),
+        TURRET,
+        motion_field(
+            "motion",
+            Kind.STROKE,
+            "angle of the turret over one turn of the cam, 360 degrees; it ends 360/stops degrees further on",
+            over=Input(most=360),
+            required=True,
+        ),
+        DRIVE,
+    ),
+    alternatives=(("barrel", ()), ("globoid", ())),
+)
+PART = replace(
+    mapping(
+        "part",
+        "the cam beside its track; angles from the radius that faces the turret at shaft angle 0",
+        length("length", "length of the cam along its axis", required=True),
+        bore.FIELD,
+        KEYWAY.field,
+        length("wall", "least wall between any two edges", default="reported, and above 0"),
+        DENSITY,
+    ),
+    required=True,
+)
+FIGURES = {
+    PRESSURE_ANGLE: (
+        "greatest pressure angle of the roller that is best placed at each shaft angle, degrees",
+        Kind.ANGLE,
+    ),
+    MIDDLE: ("greatest pressure angle in the middle of that roller's line of contact, degrees", Kind.ANGLE),
+    INNER: ("greatest pressure angle at the end of that line nearer to `from`, degrees", Kind.ANGLE),
+    OUTSIDE: ("greatest pressure angle at the end of that line nearer to `to`, degrees", Kind.ANGLE),
+    ANY: ("greatest pressure angle of any roller, of one that just leaves the cam too, degrees", Kind.ANGLE),
+    LENGTH: ("least length, over the turn, of the longest line along which a flank bears on a roller", Kind.LENGTH),
+    LEAST: ("least number of rollers that a flank bears on at once", Kind.NUMBER),
+    MOST_ENGAGED: ("greatest number of rollers that a flank bears on at once", Kind.NUMBER),
+    RIB: ("least thickness of the rib between two rollers, across the turret's radius", Kind.LENGTH),
+    "play": ("greatest play of the turret, to first order in the clearance, degrees", Kind.ANGLE),
+    "mating-radius": ("least radius, of both bodies together, across a line of contact", Kind.LENGTH),
+    "velocity": ("greatest velocity of the turret, degrees a second", Kind.ANGLE),
+    "acceleration": ("greatest acceleration of the turret, degrees a second squared", Kind.ANGLE),
+    "turret-torque": ("greatest torque on the turret, of load and inertia, N m", Kind.NUMBER),
+    "torque": ("greatest torque that turns the cam, or holds it back, N m", Kind.NUMBER),
+    "contact-force": ("greatest force between cam and roller, N", Kind.FORCE),
+    "contact-pressure": ("greatest pressure of the contact by Hertz, N/mm²", Kind.NUMBER),
+    "mass": ("mass, kg", Kind.NUMBER),
+    LEAST_WALL: ("least wall between two edges of the cam", Kind.LENGTH),
+}
+"""Figures of an indexing cam that a recipe may limit, each with what it is and the kind of its values."""
+
+LIMITS = limits_of(FIGURES)
+
+
+def _read_radii(reader: Reader, field: Field, node: Node, path: str) -> tuple[str | float, ...] | None:
+    """Read where a development is drawn: words, or radii in mm; None after a fault."""
+    found: list[str | float] = []
+    faults = len(reader.errors)
+    for i, item in enumerate(reader.items(field, node, path, MOST_RADII)):
+        if isinstance(item, Scalar) and item.text == OUTER:
+            found.append(item.text)
+            continue
+        told = len(reader.errors)
+        value = read_numeric(reader, length("at", field.about), item, join(path, i))
+        if len(reader.errors) > told:
+            last = reader.errors[-1]
+            reader.errors[-1] = replace(last, remedy=f"{last.remedy}, or {OUTER} for the blank")
+        if value is not None and value not in found:
+            found.append(value)
+        elif value is not None:
+            reader.fault(item.mark, join(path, i), "the same radius twice", quote(str(value)), "leave one out")
+    return tuple(found) if len(reader.errors) == faults else None
+
+
+def _radii_schema(_: Field) -> Schema:
+    item = {"anyOf": [{"enum": [OUTER]}, number_schema(length("", ""))]}
+    return {"type": "array", "items": item, "minItems": 1, "maxItems": MOST_RADII}
+
+
+_RADII: OwnForm[Reader] = OwnForm(
+    "a list of radii", f"a list of {OUTER} and radii, such as [{OUTER}, 38]", _read_radii, _radii_schema
+)
+DEVELOPMENT = "development"
+TABLE = "motion"
+
+
+def _mesh(name: str, *options: Field) -> Format:
+    return replace(FORMATS[name], options=FieldTable(options), forms={"": Form(pieces="triangles")}, solid=False)
+
+
+def _development() -> Format:
+    form = Field("as", Kind.CHOICE, "the flanks, unrolled", default=DEVELOPMENT, choices=(DEVELOPMENT,))
+    at = Field("at", Kind.OWN, "radii at which they are unrolled", default=f"[{OUTER}]", form=_RADII)
+    return replace(
+        FORMATS["dxf"],
+        options=FieldTable((form, at, RECIPE_UNITS, TOLERANCE)),
+        forms={DEVELOPMENT: Form(name=DEVELOPMENT, pieces="lines")},
+        check=NO_CHECK,
+        contour=True,
+    )
+
+
+def _table() -> Format:
+    form = Field("as", Kind.CHOICE, "which table it is", default=TABLE, choices=(TABLE,))
+    step = Field("step", Kind.ANGLE, "shaft angle between rows", default="0.5", at_least=0.001, at_most=90)
+    return replace(
+        FORMATS["csv"], options=FieldTable((form, step, RECIPE_UNITS)), forms={TABLE: Form(name=TABLE)}, check=NO_CHECK
+    )
+
+
+FILES: dict[str, Format] = {
+    **{name: _mesh(name, SOLID_UNITS, TOLERANCE) for name in ("stl", "ply", "3mf")},
+    "glb": replace(_mesh("glb", TOLERANCE), contour=False),
+    "dxf": _development(),
+    "csv": _table(),
+    "html": replace(FORMATS["html"], options=FieldTable(())),
+}
+"""Formats of the files of an indexing cam, with the options that they take."""
+RECIPE = FieldTable(
+    (
+        *(CORE.field(name) for name in ("name", "about", "units", "rotation")),
+        Field("cam", Kind.TABLE, "the cam and its turret", required=True, table=CAM),
+        PART,
+        export_of(FILES, "{dxf: {as: development, at: [outer, 38]}}", "[stl]"),
+        mapping(
+            "verify",
+            "how each file is judged",
+            Field(
+                "motion_error",
+                Kind.MOTION,
+                "greatest error of the turret's angle permitted",
+                default="what the tolerance implies",
+                above=0,
+                at_most=MOST,
+            ),
+        ),
+        LIMITS,
+    )
+)

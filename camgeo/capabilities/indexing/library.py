@@ -1,0 +1,148 @@
+"""Designs of indexing cams for the library, exact and without files; texts of failed checks; expected checks."""
+
+from __future__ import annotations
+
+from functools import cached_property
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from camgeo.api.check import Check, Figure, Figures
+from camgeo.api.log import stage_reporter
+from camgeo.api.own_kind import KindDesign
+from camgeo.capabilities.indexing.checks_of import design_checks, limits_held
+from camgeo.capabilities.indexing.exact import designed
+from camgeo.capabilities.indexing.figures import figures_of
+from camgeo.capabilities.indexing.keys import LENGTH, RIB
+from camgeo.checks.declared import FORM_CLOSURE, LIMIT, WATERTIGHT
+from camgeo.common.arguments import numbers_of, short_repr, whole_of
+from camgeo.common.clock import Clock
+from camgeo.common.errors import CallError
+from camgeo.common.rounding import downward
+from camgeo.curve.curve import CurveError
+from camgeo.measures.units import in_units
+from camgeo.recipe.figures import LEAST_WALL, PRESSURE_ANGLE
+from camgeo.synthesis.expected_checks import Foreseen
+from kin.numeric.records import dataclass, field
+
+if TYPE_CHECKING:
+    from numpy.typing import ArrayLike
+
+    from camgeo.capabilities.indexing.design import IndexDesign
+    from camgeo.capabilities.indexing.index_recipe import IndexRecipe
+    from camgeo.checks.declaration import Entry
+    from camgeo.recipe.export import FileRequest
+    from kin.numeric.arrays import Array
+
+MOST_DERIVATIVE = 6  # of the motion by the shaft angle
+FIELDS = {PRESSURE_ANGLE: "cam.motion", LENGTH: "cam.turret", RIB: "cam.turret.roller", LEAST_WALL: "part"}
+"""Keys that a check of the exact cam names where it fails."""
+
+
+@dataclass(frozen=True, eq=False)
+class IndexingCam(KindDesign):
+    """The exact cam that advances a turret; no file is made. Checks and figures are in the recipe's units."""
+
+    recipe: IndexRecipe
+    _design: IndexDesign = field(repr=False)
+
+    @cached_property
+    def checks(self) -> tuple[Check, ...]:
+        """The checks that need no file, those of limits among them."""
+        figures = figures_of(self._design)
+        checks = design_checks(self._design, figures)
+        return tuple(Check.of(self.recipe, check) for check in (*checks, *limits_held(self._design, figures, checks)))
+
+    @cached_property
+    def figures(self) -> Figures:
+        """The figures of the cam by name, each with its shaft angle, degrees."""
+        found = {}
+        for figure in figures_of(self._design):
+            value, unit = in_units(self.recipe, figure.value, figure.unit)
+            finite = value is not None and bool(np.isfinite(value))
+            detail, at_unit = "" if finite else "nowhere", "" if figure.at is None else "deg"
+            found[figure.name] = Figure(value if finite else None, unit, figure.at, detail, at_unit)
+        return Figures(found)
+
+    def motion(self, theta: ArrayLike, *, derivative: int = 0) -> Array:
+        """Angle of the turret above its start, rad, at any shaft angles, rad, in their shape, or a derivative.
+
+        After each turn it is further on by the pitch of the rollers. Derivatives are known up to the sixth. Raises
+        CallError for another order and for angles that are not finite; TypeError for what is no number.
+        """
+        places, order = numbers_of("theta", theta), whole_of("derivative", derivative)
+        if order not in range(MOST_DERIVATIVE + 1):
+            raise CallError(f"a derivative is one of order 0 to {MOST_DERIVATIVE}, not {short_repr(order)}")
+        if not np.isfinite(places).all():
+            raise CallError("shaft angles are finite")
+        return np.asarray(self._design.law.derivatives(places.ravel(), order)[order].reshape(places.shape))
+
+    def flank(self, theta: ArrayLike, layer: float, *, upper: bool = False) -> Array:
+        """Points (n, 3), mm, of the lower flank, or of the upper one, in a layer, mm.
+
+        A layer of a barrel is a cylinder about its axis, one of a globoid a torus about the turret's. At the shaft
+        angles (n,), rad, the points are touched by the roller that stands at the start at 0; the other rollers are
+        whole turns further on. The cam is as it is made, mirrored for `rotation: ccw`. Raises CallError for a layer
+        outside floor and blank, and for angles at which the roller does not touch it.
+        """
+        recipe, (low, high) = self.recipe, self.recipe.layers
+        if not low <= layer <= high:
+            raise CallError(f"flanks reach from {low:.9g} to {high:.9g} mm")
+        places = numbers_of("theta", theta).ravel()
+        if not np.isfinite(places).all():
+            raise CallError("shaft angles are finite")
+        try:
+            contact = self._design.flanks["upper" if upper else "lower"].on(places, float(layer))
+        except CurveError as error:
+            raise CallError("the roller does not touch that layer at one of these shaft angles") from error
+        return np.asarray(recipe.form.points(contact.phi, contact.h, contact.w) * [1.0, recipe.sense, 1.0])
+
+
+def cam_of(recipe: IndexRecipe) -> IndexingCam:
+    """Design an indexing cam; raises RecipeErrors where there is none."""
+    return IndexingCam(recipe, designed(recipe, Clock(stage_reporter(recipe))))
+
+
+def remedy(check: Entry, recipe: IndexRecipe) -> str:
+    """Change that would let a check of the exact cam hold; empty where none is known."""
+    name, value, limit = check["name"], check.get("value"), check.get("limit")
+    if value is None or limit is None or "file" in check:
+        return ""
+    if name == f"{LIMIT}{PRESSURE_ANGLE}" and check["sense"] == "at_most":
+        return "a larger cam, or a longer motion"
+    if name in {f"{LIMIT}velocity", f"{LIMIT}acceleration"}:
+        turns = (limit / value) ** (1.0 if name.endswith("velocity") else 0.5) * (recipe.drive.rpm or 0.0)
+        return f"cam.drive.rpm of at most {downward(turns, 5)}"
+    loads = {f"{LIMIT}{each}": 1.0 for each in ("contact-force", "turret-torque", "torque")}
+    loads[f"{LIMIT}contact-pressure"] = 2.0
+    if name in loads:
+        share = downward(100.0 * (limit / value) ** loads[name], 4)
+        return f"a load and an inertia of {share} percent" if recipe.drive.inertia else f"a load of {share} percent"
+    if name == f"{LIMIT}play":
+        least = downward(recipe.clearance / recipe.mm * limit / value, 4)
+        return f"a clearance of at most {least} {recipe.units}"
+    return ""
+
+
+OF_SOLIDS = ("volume", "floor", "blank", "ends")
+"""Checks of every solid, beside those of its flanks and its bore."""
+
+
+def foreseen(recipe: IndexRecipe) -> tuple[Foreseen, ...]:
+    """Checks that the report is sure to have."""
+    expected = [Foreseen(name) for name in (PRESSURE_ANGLE, LENGTH, RIB, LEAST_WALL)]
+    expected += [Foreseen(f"{LIMIT}{bound.figure}") for bound in recipe.limits]
+    for request in recipe.export.files:
+        if request.format.contour:
+            (name,) = recipe.filenames(request)
+            expected += [Foreseen(each, name) for each in _of_file(recipe, request)]
+    return tuple(dict.fromkeys(expected))
+
+
+def _of_file(recipe: IndexRecipe, request: FileRequest) -> list[str]:
+    """Names of the checks of a file."""
+    if request.kind == "dxf":
+        return ["units", "contour", "motion"]
+    names = [WATERTIGHT.name, "contour", "motion", *OF_SOLIDS]
+    names += ["bore"] if recipe.part.bore is not None else []
+    return [*names, FORM_CLOSURE.name]

@@ -1,0 +1,94 @@
+"""Files of an indexing cam: what is made and written, and what kin's verdict on each is."""
+
+from __future__ import annotations
+
+from functools import partial
+from typing import TYPE_CHECKING
+
+from camgeo.capabilities.indexing.design import in_recipe
+from camgeo.capabilities.indexing.solid import index_mesh
+from camgeo.capabilities.indexing.verdicts import judged_file
+from camgeo.common.units import UNIT_MM
+from camgeo.files.errors import demand_package
+from camgeo.files.mesh import Item
+from camgeo.formats.glb import COLOURS, Actor, steady_turn, write_glb
+from camgeo.measures.file_result import FileResult
+from camgeo.output.extension import MAKING, numbers_of
+from camgeo.output.own_kind import Made
+from camgeo.output.refusals import refusals
+
+if TYPE_CHECKING:
+    from pathlib import Path
+
+    from camgeo.capabilities.indexing.design import IndexDesign
+    from camgeo.common.clock import Clock
+    from camgeo.fit.bound import Bound
+    from camgeo.recipe.export import FileRequest
+    from kin.indexing.verdict import IndexVerdict
+
+
+def foresee(design: IndexDesign, request: FileRequest) -> None:  # noqa: ARG001 - as of every kind of cam
+    """Raise MissingExtraError where a package is missing that makes a file."""
+    if request.kind == "dxf":
+        demand_package("ezdxf", "a DXF file needs ezdxf")
+
+
+def make(design: IndexDesign, clock: Clock, request: FileRequest, path: Path) -> Made[IndexVerdict]:
+    """Make, write, read back and judge one file.
+
+    Raises RecipeErrors where the tolerance cannot be held or no sound file can be made, OSError where it cannot be
+    written.
+    """
+    recipe = design.recipe
+    if request.kind == "csv":
+        from camgeo.capabilities.indexing.tables import write_csv
+
+        with clock.stage("table"):
+            write_csv(design, request, path)
+        return Made(FileResult(path, request, units=UNIT_MM[request.unit_for(recipe.units)]))
+    with refusals(recipe, request, partial(in_recipe, recipe)):
+        return _MAKERS.get(request.kind, _mesh)(design, clock, request, path)
+
+
+def _judged(
+    design: IndexDesign, clock: Clock, request: FileRequest, path: Path, fit: tuple[int | None, Bound]
+) -> Made[IndexVerdict]:
+    """A written file with kin's verdict on it; `fit` is number of points, None for a mesh, and bound."""
+    tolerance = design.recipe.tolerance(request)
+    with clock.stage(f"judge {request.kind}"):
+        verdict = judged_file(design, path, request, tolerance)
+    return Made(FileResult(path, request, tolerance, *fit, units=verdict.units), verdict.checks, verdict)
+
+
+def _mesh(design: IndexDesign, clock: Clock, request: FileRequest, path: Path) -> Made[IndexVerdict]:
+    recipe, mm, write = design.recipe, UNIT_MM[request.unit_for(design.recipe.units)], MAKING[request.kind].write
+    if write is None:
+        raise ValueError(f"{request.kind} holds no mesh")
+    with clock.stage(f"mesh {request.kind}"):
+        mesh, facts = index_mesh(design, recipe.tolerance(request), numbers_of(request.kind, mm))
+    with clock.stage(f"write {request.kind}"):
+        write(path, [Item("cam", mesh)], recipe.name, mm, recipe.about)
+    return _judged(design, clock, request, path, (None, facts.bound))
+
+
+def _view(design: IndexDesign, clock: Clock, request: FileRequest, path: Path) -> Made[IndexVerdict]:
+    """The cam as it turns, to look at."""
+    with clock.stage("mesh glb"):
+        mesh, _ = index_mesh(design, design.recipe.tolerance(request), numbers_of("glb", 1.0))
+    with clock.stage("write glb"):
+        actor = Actor("cam", mesh, steady_turn(design.recipe.rotation), COLOURS[0])
+        write_glb(path, [actor], title=design.recipe.name)
+    return Made(FileResult(path, request, units=UNIT_MM["m"]))
+
+
+def _development(design: IndexDesign, clock: Clock, request: FileRequest, path: Path) -> Made[IndexVerdict]:
+    from camgeo.capabilities.indexing.development import write_development
+
+    mm = UNIT_MM[request.unit_for(design.recipe.units)]
+    with clock.stage("write dxf"):
+        fit = write_development(design, request, path, design.recipe.tolerance(request), mm)
+    return _judged(design, clock, request, path, fit)
+
+
+_MAKERS = {"dxf": _development, "glb": _view}
+"""Makers of files by their formats, beside meshes."""

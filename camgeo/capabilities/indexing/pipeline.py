@@ -1,0 +1,129 @@
+"""A run of indexing cams: from a recipe to files on disk and a verdict on them."""
+
+from __future__ import annotations
+
+from functools import partial
+from typing import TYPE_CHECKING, Any
+
+from camgeo.capabilities.indexing.checks_of import design_checks, limits_held, remarks_on
+from camgeo.capabilities.indexing.design import in_recipe
+from camgeo.capabilities.indexing.exact import designed, stated_motion
+from camgeo.capabilities.indexing.figures import figures_of
+from camgeo.capabilities.indexing.making import foresee, make
+from camgeo.capabilities.indexing.section import index_section
+from camgeo.capabilities.indexing.solid import index_mesh
+from camgeo.capabilities.indexing.verdicts import file_rows, judged_file
+from camgeo.measures.units import UNIT_NAMES, report_unit
+from camgeo.output.extension import numbers_of
+from camgeo.output.own_kind import OwnKind, Told
+from camgeo.output.refusals import refusals
+from camgeo.recipe.export import FileRequest
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Sequence
+    from pathlib import Path
+
+    from camgeo.capabilities.indexing.design import IndexDesign
+    from camgeo.common.clock import Clock
+    from camgeo.files.layer_outline import LayerOutline
+    from camgeo.files.mesh import Mesh
+    from camgeo.measures.placed import Figure
+    from camgeo.output.own_kind import Made
+    from camgeo.report.page.scene import Scene
+    from kin.indexing.verdict import IndexVerdict
+    from kin.numeric.arrays import Array
+    from kin.numeric.check import Check
+
+
+def _examined(design: IndexDesign, _: Clock) -> tuple[list[Check], tuple[Figure, ...]]:
+    figures = tuple(figures_of(design))
+    return design_checks(design, figures), figures
+
+
+def _told(design: IndexDesign, figures: Sequence[Figure]) -> Told:
+    unit = report_unit(design.recipe, "deg")
+    return Told(design.recipe.follower_name, remarks_on(design, figures), design.motion.kept, unit)
+
+
+def _section(design: IndexDesign, figures: Sequence[Figure]) -> dict[str, Any]:
+    return {"indexing": index_section(design, figures)}
+
+
+def _rows(design: IndexDesign, verdict: IndexVerdict) -> dict[str, Any]:
+    return file_rows(design.recipe, verdict)
+
+
+def _maker(design: IndexDesign, clock: Clock) -> Callable[[FileRequest, Path], Made[IndexVerdict]]:
+    return partial(make, design, clock)
+
+
+def _pieces(verdict: IndexVerdict) -> int:
+    return sum(flank.pieces or 0 for flank in verdict.flanks)
+
+
+def _seen(design: IndexDesign, step: int) -> Scene:
+    from camgeo.capabilities.indexing.index_page import scene
+
+    return scene(design, step)
+
+
+def _picture(design: IndexDesign) -> dict[str, Any]:
+    from camgeo.capabilities.indexing.index_page import drawn
+
+    return drawn(design)
+
+
+def _script(design: IndexDesign, _: Sequence[Made[IndexVerdict]]) -> dict[str, Any]:
+    from camgeo.capabilities.indexing.index_page import script
+
+    return script(design)
+
+
+def _panels(_: IndexDesign, report: dict[str, Any]) -> str:
+    from camgeo.capabilities.indexing.index_page import panels
+
+    return panels(report)
+
+
+def _looks() -> tuple[str, str]:
+    return "", ""
+
+
+def _drawings(design: IndexDesign, tolerance: float) -> list[tuple[str, Sequence[LayerOutline | Array]]]:
+    """The flanks of a barrel unrolled at the blank's radius, to be wrapped about it; a globoid has no such drawing."""
+    from camgeo.capabilities.indexing.development import unrolled
+
+    recipe = design.recipe
+    if not recipe.turret.unrolls:
+        raise recipe.error("cam.globoid", "a globoid has no development", None, "give stl, 3mf or ply")
+    radius = f"{recipe.form.blank / recipe.mm:.6g} {UNIT_NAMES[recipe.units]}"
+    with refusals(recipe, FileRequest("dxf"), partial(in_recipe, recipe)):
+        return [(f"{recipe.name}, unrolled at a radius of {radius}", unrolled(design, tolerance))]
+
+
+def _mesh(design: IndexDesign, request: FileRequest) -> Mesh:
+    with refusals(design.recipe, request, partial(in_recipe, design.recipe)):
+        return index_mesh(design, design.recipe.tolerance(request), numbers_of(request.kind, 1.0))[0]
+
+
+INDEXERS = OwnKind(
+    designed=designed,
+    examined=_examined,
+    limited=limits_held,
+    told=_told,
+    section=_section,
+    rows=_rows,
+    foresee=foresee,
+    maker=_maker,
+    judged=judged_file,
+    pieces=_pieces,
+    seen=_seen,
+    picture=_picture,
+    script=_script,
+    panels=_panels,
+    looks=_looks,
+    motion=stated_motion,
+    drawings=_drawings,
+    mesh=_mesh,
+    formats=("stl", "ply", "3mf", "dxf"),
+)

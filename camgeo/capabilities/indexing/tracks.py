@@ -1,0 +1,75 @@
+"""Tracks of rollers in one layer of an indexing cam, all turns of one roller as one line; the rib between them."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from kin.numeric.angles import TURN
+
+if TYPE_CHECKING:
+    from camgeo.capabilities.indexing.design import IndexDesign
+    from camgeo.capabilities.indexing.flank import Contact
+    from kin.numeric.arrays import Array
+
+STEPS = 1440  # places of a turn at which a track is known
+
+
+def angles(design: IndexDesign) -> Array:
+    """Shaft angles (n,), rad, at which the roller that stands at the start after no turn may touch the cam."""
+    turns = design.turns
+    steps = np.arange(turns.start * STEPS, turns.stop * STEPS + 1) * (TURN / STEPS)
+    breaks = (design.law.breaks[None, :] + TURN * np.arange(turns.start, turns.stop)[:, None]).ravel()
+    theta = np.unique(np.concatenate([steps, breaks]))
+    psi = design.recipe.start + design.law.derivatives(theta, 0)[0]
+    low, high = design.spanned
+    near = np.flatnonzero((psi >= low) & (psi <= high))
+    return theta[near[0] : near[-1] + 1]
+
+
+def track(design: IndexDesign, name: str, w: float) -> tuple[Array, Contact]:
+    """Shaft angles (n,), rad, and contacts of a flank in a layer, mm.
+
+    Raises CurveError where a roller does not touch the layer.
+    """
+    theta = angles(design)
+    return theta, design.flanks[name].on(theta, w)
+
+
+def rib_thickness(design: IndexDesign) -> tuple[float, float]:
+    """Least thickness of the rib, mm, and the shaft angle at which its lower roller is there, rad.
+
+    It is measured along the cam's axis, in a globoid along arcs about the turret's axis, at floor, middle and blank,
+    where both its sides lie within the cam; of a rib that is none also where one of them does. Without such a place it
+    is infinite.
+    """
+    recipe, found = design.recipe, []
+    for w in np.linspace(*recipe.layers, 3).tolist():
+        (_, lower), (theta, upper) = track(design, "lower", w), track(design, "upper", w)
+        low, high = recipe.form.ends(w)
+        phi = upper.phi + TURN  # where the next roller comes after
+        inside = (phi >= lower.phi[0]) & (phi <= lower.phi[-1])
+        above = np.interp(phi[inside], lower.phi, lower.h)
+        below = upper.h[inside]
+        both = (above > low) & (above < high) & (below > low) & (below < high)
+        between = both | ((above <= below) & (above > low) & (below < high))
+        thick = recipe.form.unit(w) * (above - below)[between]
+        if thick.size:
+            i = int(np.argmin(thick))
+            found.append((float(thick[i]), float(theta[inside][between][i])))
+    return min(found, default=(np.inf, 0.0))
+
+
+def removed(design: IndexDesign, w: float) -> float:
+    """Area, mm^2, that all rollers together take out of a layer, mm."""
+    turret = design.recipe.turret
+    ends = np.array(design.recipe.form.ends(w))
+    base, most = turret.across(np.full(2, w), ends)
+    taken, last = {}, {}
+    for name in design.flanks:
+        _, rows = track(design, name, w)
+        below = turret.across(np.full(rows.h.shape, w), np.clip(rows.h, *ends)) - base
+        taken[name] = float(np.sum(0.5 * (below[1:] + below[:-1]) * np.diff(rows.phi)))
+        last[name] = float(rows.phi[-1])
+    return taken["upper"] - taken["lower"] + float(most - base) * (last["lower"] - last["upper"])

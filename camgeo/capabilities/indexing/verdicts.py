@@ -1,0 +1,104 @@
+"""Intents by which kin judges the files of an indexing cam, and its verdicts in the report's terms."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
+from camgeo.capabilities.indexing.development import developed
+from camgeo.capabilities.indexing.keys import DEVELOPMENT, FILES
+from camgeo.common.units import UNIT_MM
+from camgeo.measures.units import in_units
+from camgeo.part.as_intent import holes_of
+from camgeo.part.body import Body
+from camgeo.recipe.export import requests
+from kin.indexing import intent
+from kin.read.formats import format_of
+
+if TYPE_CHECKING:
+    from pathlib import Path
+
+    from camgeo.capabilities.indexing.design import IndexDesign
+    from camgeo.capabilities.indexing.index_recipe import IndexRecipe
+    from camgeo.recipe.export import FileRequest
+    from kin.indexing.verdict import FlankVerdict, IndexVerdict
+
+
+def intended(design: IndexDesign, mm: float = 1.0) -> intent.IndexIntent:
+    """The cam in kin's words; `mm` is the unit of a drawing."""
+    recipe, roller = design.recipe, design.recipe.roller
+    bore = None if design.bore is None else holes_of(Body(recipe.length, (design.bore,)))[0]
+    return intent.IndexIntent(
+        recipe.turret.intended(recipe.form.radius, recipe.form.depth),
+        recipe.turret.height,
+        recipe.length,
+        design.motion.motion,
+        recipe.start,
+        recipe.stops,
+        roller.radius,
+        roller.inner,
+        roller.outer,
+        recipe.clearance,
+        bore,
+        mirrored=recipe.mirrored,
+        mm=mm,
+    )
+
+
+def judged_file(
+    design: IndexDesign,
+    path: Path,
+    request: FileRequest | None,
+    tolerance: float,
+    *,
+    units: float | None = None,
+    gap: float | None = None,  # noqa: ARG001 - lines of a development are not joined
+) -> IndexVerdict:
+    """Kin's verdict on a file; `units` is mm in the unit of a file that states none.
+
+    A drawing that the recipe does not ask for is held against the lines that the recipe's developments have, or those
+    of one by default. Raises RecipeErrors for a drawing of a globoid.
+    """
+    from kin.indexing.judge import verify
+
+    recipe = design.recipe
+    limits = intent.Limits(tolerance, recipe.verify.motion_error)
+    stated = format_of(path).units
+    if format_of(path).contents != "drawing":
+        own = 1.0 if request is None else UNIT_MM[request.unit_for("mm")]
+        return verify(path, intended(design), limits, None if stated else units or own)
+    if not recipe.turret.unrolls:
+        raise recipe.error(recipe.stated("cam.globoid"), "a globoid has no development", None, "give a solid of it")
+    from kin.indexing.judge import verify_development
+
+    asked = [request] if request is not None else [each for each in recipe.export.files if each.as_ == DEVELOPMENT]
+    asked = asked or list(requests([{"kind": "dxf"}], FILES))
+    mm = UNIT_MM[asked[0].unit_for(recipe.units)]
+    lines = {line.layer: line for each in asked for line in developed(design, each, mm)}
+    return verify_development(path, intended(design, mm), list(lines.values()), limits, None if stated else units or mm)
+
+
+# --- in a report ------------------------------------------------------------------------------------------------------
+
+
+def file_rows(recipe: IndexRecipe, verdict: IndexVerdict) -> dict[str, Any]:
+    """Entries of a file in a report: what was measured on each of its flanks, and the play between them."""
+    entry: dict[str, Any] = {}
+    if verdict.flanks:
+        entry["surfaces"] = [{"name": flank.name, **_flank(recipe, flank)} for flank in verdict.flanks]
+    if verdict.play is not None:
+        play = verdict.play
+        (least, unit), (most, _) = in_units(recipe, play.least, "deg"), in_units(recipe, play.most, "deg")
+        places = {"min_at": play.least_at, "max_at": play.most_at}
+        entry["play"] = [{"between": ["lower", "upper"], "min": least, "max": most, "unit": unit, **places}]
+    return entry
+
+
+def _flank(recipe: IndexRecipe, flank: FlankVerdict) -> dict[str, Any]:
+    error = None if flank.measured_error is None else flank.measured_error / recipe.mm
+    if flank.motion is None:
+        return {"measured_error": error, "motion": None}
+    motion: dict[str, Any] = {}
+    for key in ("max", "least", "most", "rms", "remainder"):
+        motion[key], unit = in_units(recipe, getattr(flank.motion, key), "deg")
+    motion |= {"unit": unit, "at": flank.motion.at, "at_unit": "deg", "extremes": "proved"}
+    return {"measured_error": error, "motion": motion}

@@ -1,0 +1,163 @@
+"""How far the surface of a file is from the flanks: out of the metal, proud, and into it, bare; with proofs.
+
+Proud is the depth at which a triangle reaches into what rollers sweep. Seen along a roller's axis it is met at an edge
+first, so that the worst places of edges tell it exactly. Bare is how far a place of the surface is from all rollers at
+all angles. At one angle the distance from an axis is convex, so that over a triangle it is greatest at a corner: the
+corners' distances at any angle bound it. An angle between the worst ones of the corners is taken, and triangles are
+divided until the bound is close to what corners show.
+"""
+
+from __future__ import annotations
+
+import math
+from typing import TYPE_CHECKING, NamedTuple
+
+import numpy as np
+
+from kin.indexing.rollers import Worst
+from kin.numeric.angles import TURN
+from kin.numeric.records import dataclass
+
+if TYPE_CHECKING:
+    from kin.indexing.faces import Body
+    from kin.indexing.rollers import Rollers
+    from kin.numeric.arrays import Array, Indices, Mask
+
+OPEN = 0.2  # of the tolerance: what the proof may leave open
+PLAIN = 0.5  # of the tolerance: a bound below it need not be closer
+ROUNDS = 24  # of dividing triangles
+MOST_PARTS = 2_000_000  # triangles at a time while dividing
+APART = 0.1  # rad: worst angles of a triangle's corners that are farther apart are not of one place of a flank
+
+
+class Peak(NamedTuple):
+    """A greatest distance, mm, found at a shaft angle, rad, and by how much it may be exceeded at most."""
+
+    value: float
+    remainder: float
+    at: float
+
+
+@dataclass(frozen=True, eq=False)
+class Known:
+    """What is known of a body's corners, as far as they are asked for.
+
+    worst     (v,) each at its worst angle
+    distance  (v,) from what rollers sweep, mm
+    above     (v,) whether the corner is above the roller: on an upper flank, if on any
+    along     (v,) place along the roller
+    gives     (v,) how far the corner pushes the turret at that angle, rad; below 0 it is that far off
+    slope     (v,) of the excess by the turret's angle where it touches
+    """
+
+    worst: Worst
+    distance: Array
+    above: Mask
+    along: Array
+    gives: Array
+    slope: Array
+
+    @staticmethod
+    def of(rollers: Rollers, body: Body, asked: Indices) -> Known:
+        """Corners by their numbers; values of others are nan."""
+        count = len(body.points)
+        worst = Worst(*(np.full(count, np.nan) for _ in range(4)))
+        points = body.points[asked]
+        found = rollers.worst(points)
+        for row, values in zip(worst, found, strict=True):
+            row[asked] = values
+        met, form = rollers.at(points, found.theta), rollers.intent.form
+        radius = rollers.own(met)
+        distance, along, gives, slope = (np.full(count, np.nan) for _ in range(4))
+        size = np.abs(met.d)
+        touch = form.touch(met.s, met.y, radius)
+        distance[asked] = rollers.distance(found.excess, radius)
+        along[asked] = form.along(met.x, met.s, met.d)
+        gives[asked] = touch - size
+        slope[asked] = form.slope(met.s, np.where(np.isfinite(touch), touch, size))
+        above = np.zeros(count, dtype=np.bool_)
+        above[asked] = met.d > 0.0
+        return Known(worst, distance, above, along, gives, slope)
+
+    def take(self, which: Indices) -> Worst:
+        """Worst angles of some corners."""
+        return Worst(*(row[which] for row in self.worst))
+
+
+class Edged(NamedTuple):
+    """Edges of triangles, by the numbers of their ends (e,), at their worst angles."""
+
+    start: Indices
+    last: Indices
+    worst: Worst
+
+
+def edges_of(rollers: Rollers, body: Body, known: Known, which: Indices) -> Edged:
+    """Edges of triangles by their numbers, of those whose ends are in reach of a roller."""
+    a, b = body.edges_of(which)
+    ends = known.worst.excess
+    near = np.maximum(ends[a], ends[b]) < rollers.reached
+    a, b = a[near], b[near]
+    return Edged(a, b, rollers.edges(body.points[a], body.points[b], (known.take(a), known.take(b))))
+
+
+def proud(rollers: Rollers, known: Known, edged: Edged, own: Indices) -> Peak:
+    """How far corners and edges of a flank stand out of the metal; `own` are the corners of its triangles."""
+    corner = own[int(known.distance[own].argmin())]
+    best = Peak(-float(known.distance[corner]), 0.0, float(known.worst.theta[corner]))
+    if not len(edged.start):
+        return best
+    radius = np.where(known.above[edged.start], rollers.radii[1], rollers.radii[0])
+    sure = -rollers.distance(edged.worst.excess, radius)
+    most = -rollers.distance(edged.worst.excess - edged.worst.open, radius)
+    k = int(sure.argmax())
+    if sure[k] > best.value:
+        best = Peak(float(sure[k]), 0.0, float(edged.worst.theta[k]))
+    return best._replace(remainder=max(0.0, float(most.max()) - best.value))
+
+
+def bare(rollers: Rollers, body: Body, known: Known, which: Indices) -> Peak:
+    """How far triangles of a flank, by their numbers, reach into the metal."""
+    corners = body.corners[which]
+    flat = corners.ravel()
+    place = flat[int(known.distance[flat].argmax())]
+    value, at = float(known.distance[place]), float(known.worst.theta[place])
+    triangles, theta = body.points[corners], known.worst.theta[corners]
+    theta = theta[:, :1] + np.remainder(theta - theta[:, :1] + math.pi, TURN) - math.pi
+    bound, goal = value, max(value + OPEN * rollers.tolerance, PLAIN * rollers.tolerance)
+    for turn in range(ROUNDS + 1):
+        strayed = np.flatnonzero(np.ptp(theta, axis=1) > APART)
+        if len(strayed) and turn:
+            theta[strayed] = rollers.worst(triangles[strayed].reshape(-1, 3)).theta.reshape(-1, 3)
+            theta[strayed, 1:] += TURN * np.round((theta[strayed, :1] - theta[strayed, 1:]) / TURN)
+        off = _farthest(rollers, triangles, theta)
+        left = off > goal
+        bound = max(bound, float(off[~left].max(initial=-math.inf)))
+        if not left.any():
+            break
+        if turn == ROUNDS or 2 * np.count_nonzero(left) > MOST_PARTS:
+            bound = max(bound, float(off.max()))
+            break
+        triangles, theta = _halved(triangles[left], theta[left])
+    return Peak(value, max(0.0, bound - value), at)
+
+
+def _halved(triangles: Array, theta: Array) -> tuple[Array, Array]:
+    """Triangles (t, 3, 3) and angles at their corners (t, 3), in two by the side over which the angle goes most."""
+    first = np.abs(theta - np.roll(theta, -1, axis=1)).argmax(axis=1)
+    rows = np.arange(len(theta))
+    a, b, c = ((triangles[rows, (first + k) % 3], theta[rows, (first + k) % 3]) for k in range(3))
+    middle = tuple(0.5 * (one + other) for one, other in zip(a, b, strict=True))
+    parts = [(a, middle, c), (middle, b, c)]
+    places, angles = (np.concatenate([np.stack([at[k] for at in part], axis=1) for part in parts]) for k in range(2))
+    return places, angles
+
+
+def _farthest(rollers: Rollers, triangles: Array, theta: Array) -> Array:
+    """Bound (t,), mm, of how far triangles (t, 3, 3) are from rollers, by corners at an angle between theirs (t, 3)."""
+    one, other, third = theta.T
+    low, high = np.minimum(np.minimum(one, other), third), np.maximum(np.maximum(one, other), third)
+    middle = np.repeat(0.5 * (low + high), 3)
+    off, psi = (row.reshape(-1, 3) for row in rollers.near(triangles.reshape(-1, 3), middle))
+    one = np.abs(psi - psi[:, :1]).max(axis=1) < 0.5 * rollers.intent.pitch
+    return np.where(one, np.maximum(np.maximum(off[:, 0], off[:, 1]), off[:, 2]), np.inf)

@@ -1,0 +1,193 @@
+"""Which face of the intended cam each triangle belongs to, and how far the plain ones are off.
+
+Blank and floor are layers of the form, ends are level, the bore is an outline drawn along z. A triangle within the
+tolerance of a plain face, inside included, belongs to the nearest of them; corners alone do not tell, as all three may
+lie on an edge between two faces. Of the others each belongs to the flanks or to a plain face, whichever is nearer.
+The depth of a layer bends by bounds that the form gives, so that what lies between corners is known; where that leaves
+too much open, triangles are divided.
+"""
+
+from __future__ import annotations
+
+import math
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from kin.contour.arcs import Arcs
+from kin.contour.holes import farthest
+from kin.contour.nearest import nearest
+from kin.numeric.records import dataclass
+
+if TYPE_CHECKING:
+    from kin.contour.holes import Hole
+    from kin.indexing.intent import IndexIntent
+    from kin.numeric.arrays import Array, Indices, Mask
+    from kin.read.mesh.mesh import Mesh
+
+BLANK, FLOOR, BOTTOM, TOP, BORE = "blank", "floor", "bottom", "top", "bore"
+FINE = 1e-2  # of the tolerance, to which the bore is measured
+HALVINGS = 5  # of triangles whose inside is not known well enough
+
+
+@dataclass(frozen=True, eq=False)
+class Body:
+    """A mesh, mm, as if not mirrored, heights over the turret's centre.
+
+    points (v, 3) and triangles by their numbers (t, 3); depth (v,) below the blank.
+    """
+
+    points: Array
+    corners: Indices
+    depth: Array
+
+    @staticmethod
+    def of(mesh: Mesh, intent: IndexIntent) -> Body:
+        """The body of a file's mesh."""
+        points, corners = mesh.points - [0.0, 0.0, intent.height], mesh.corners
+        if intent.mirrored:
+            points, corners = points * [1.0, -1.0, 1.0], corners[:, ::-1]
+        r = np.hypot(points[:, 0], points[:, 1])
+        return Body(points, corners, intent.form.depth_of(r, points[:, 2]))
+
+    def divided(self, intent: IndexIntent, which: Indices, longest: float) -> Body:
+        """The body with some triangles, by their numbers, in quarters until no side of them is longer, mm.
+
+        The parts lie where the triangles do, beside others that are whole.
+        """
+        places = self.points[self.corners[which]]
+        size = np.linalg.norm(np.roll(places, -1, axis=1) - places, axis=2).max(axis=1, initial=0.0)
+        long = size > longest
+        if not long.any():
+            return self
+        parts = [np.delete(self.corners, which[long], axis=0)]
+        places, size, points = places[long], size[long], [self.points]
+        while len(places):
+            done = size <= longest
+            count = sum(len(rows) for rows in points)
+            points.append(places[done].reshape(-1, 3))
+            parts.append(count + np.arange(3 * np.count_nonzero(done)).reshape(-1, 3))
+            places, size = quartered(places[~done]), np.repeat(0.5 * size[~done], 4)
+        every = np.concatenate(points)
+        r = np.hypot(every[:, 0], every[:, 1])
+        return Body(every, np.concatenate(parts), intent.form.depth_of(r, every[:, 2]))
+
+    def edges_of(self, which: Indices) -> tuple[Indices, Indices]:
+        """Both ends (e,) of the edges of triangles by their numbers, each edge once."""
+        chosen = self.corners[which]
+        a, b = chosen.ravel(), np.roll(chosen, -1, axis=1).ravel()
+        codes = np.unique(np.minimum(a, b) * np.int64(len(self.points)) + np.maximum(a, b))
+        return (codes // len(self.points)).astype(np.intp), (codes % len(self.points)).astype(np.intp)
+
+
+@dataclass(frozen=True, eq=False)
+class Faces:
+    """Triangles of a body by face.
+
+    kinds  names of the plain faces
+    kind   (t,) number of each triangle's face among them, of one on a flank that of none
+    off    greatest distance, mm, of a plain face's triangles from it, by its name; nan where it has none
+    least  (t,) distance of each triangle from the nearest plain face, mm
+    """
+
+    kinds: tuple[str, ...]
+    kind: Indices
+    off: dict[str, float]
+    least: Array
+
+    @property
+    def flanks(self) -> Mask:
+        """Triangles (t,) that belong to flanks."""
+        return np.asarray(self.kind == len(self.kinds))
+
+    def of(self, name: str) -> Mask:
+        """Triangles (t,) of a plain face."""
+        return np.asarray(self.kind == self.kinds.index(name))
+
+
+def plain_offs(body: Body, intent: IndexIntent, tolerance: float) -> dict[str, Array]:
+    """Distances (t,), mm, of triangles from each plain face, their inside included where it may be within tolerance."""
+    low, high = intent.ends
+    z = body.points[:, 2]
+    corners = {BOTTOM: np.abs(z - low), TOP: np.abs(z - high)}
+    if intent.bore is not None:
+        corners[BORE] = _off_bore(body, intent.bore)
+    offs = {name: off[body.corners].max(axis=1) for name, off in corners.items()}
+    for name, depth in ((BLANK, 0.0), (FLOOR, intent.form.depth)):
+        off = np.abs(body.depth - depth)[body.corners].max(axis=1)
+        near = np.flatnonzero(off <= tolerance)
+        off[near] = _layer_off(body.points[body.corners[near]], intent, depth, tolerance)
+        offs[name] = off
+    if intent.bore is not None:
+        near = np.flatnonzero(offs[BORE] <= tolerance)
+        places = body.points[body.corners[near]][..., :2]
+        middles = np.concatenate([0.5 * (places + np.roll(places, -1, axis=1)), places.mean(axis=1, keepdims=True)], 1)
+        inside = nearest(intent.bore.contour.as_arcs()[0], middles.reshape(-1, 2))[1].reshape(-1, 4)
+        offs[BORE][near] = np.maximum(offs[BORE][near], inside.max(axis=1, initial=0.0))
+    return offs
+
+
+def sorted_faces(body: Body, intent: IndexIntent, offs: dict[str, Array], away: Array, tolerance: float) -> Faces:
+    """Faces of triangles that are `offs` from plain faces and `away` (t,), mm, from flanks."""
+    kinds = tuple(offs)
+    every = np.stack(list(offs.values()))
+    kind, least = every.argmin(axis=0), every.min(axis=0)
+    kind = np.where((least > tolerance) & (away < least), len(kinds), kind)
+    off = {name: float(row[kind == k].max(initial=-math.inf)) for k, (name, row) in enumerate(offs.items())}
+    if intent.bore is not None and off[BORE] > -math.inf:
+        a, b = body.edges_of(np.flatnonzero(kind == kinds.index(BORE)))
+        off[BORE] = max(off[BORE], _off_outline(intent.bore, body.points[a, :2], body.points[b, :2], FINE * tolerance))
+    return Faces(kinds, kind, {name: math.nan if one == -math.inf else one for name, one in off.items()}, least)
+
+
+def _layer_off(triangles: Array, intent: IndexIntent, depth: float, tolerance: float) -> Array:
+    """Distance (t,), mm, of triangles (t, 3, 3) from a layer: of their inside too, divided while that is open."""
+    form = intent.form
+    worst, own = np.zeros(len(triangles)), np.arange(len(triangles))
+    for halving in range(HALVINGS + 1):
+        off = form.depth_of(np.hypot(triangles[..., 0], triangles[..., 1]), triangles[..., 2]) - depth
+        ways = (np.roll(triangles, -1, axis=1) - triangles).transpose(1, 0, 2)
+        more, less = form.bent(ways, triangles.mean(axis=1))
+        known = np.abs(off).max(axis=1)
+        bound = np.maximum(off.max(axis=1) + more, less - off.min(axis=1))
+        bound = np.maximum(bound, known)
+        settled = (bound <= tolerance) | (known > tolerance) | (halving == HALVINGS)
+        np.maximum.at(worst, own[settled], bound[settled])
+        own, triangles = np.repeat(own[~settled], 4), quartered(triangles[~settled])
+        if not len(own):
+            break
+    return worst
+
+
+def quartered(values: Array) -> Array:
+    """Values (t, 3, ...) at corners of triangles as those (4 t, 3, ...) of the four that halved sides make of each."""
+    a, b, c = values[:, 0], values[:, 1], values[:, 2]
+    ab, bc, ca = 0.5 * (a + b), 0.5 * (b + c), 0.5 * (c + a)
+    parts = [np.stack(one, axis=1) for one in ((a, ab, ca), (ab, b, bc), (ca, bc, c), (ab, bc, ca))]
+    return np.stack(parts, axis=1).reshape(-1, *values.shape[1:])
+
+
+def _off_bore(body: Body, bore: Hole) -> Array:
+    """Distances (v,), mm, of corners from the outline of a bore, seen along z; infinite for those far outside it."""
+    reach = 1.1 * math.sqrt(2.0) * float(np.abs(bore.contour.box).max())
+    off = np.full(len(body.points), np.inf)
+    near = np.hypot(body.points[:, 0], body.points[:, 1]) <= reach
+    if near.any():
+        flat, number = np.unique(body.points[near, :2], axis=0, return_inverse=True)
+        off[near] = nearest(bore.contour.as_arcs()[0], flat)[1][number.ravel()]
+    return off
+
+
+def _off_outline(bore: Hole, start: Array, last: Array, fine: float) -> float:
+    """Greatest distance, mm, of lines from the outline of a bore, seen along z, to within `fine`."""
+    flat = np.hstack([start, last])
+    flat = np.unique(np.where(start[:, :1] > last[:, :1], flat[:, [2, 3, 0, 1]], flat), axis=0)
+    way = flat[:, 2:] - flat[:, :2]
+    length = np.hypot(way[:, 0], way[:, 1])
+    moved = length > 0.0
+    if not moved.any():
+        return 0.0
+    way, length = way[moved], length[moved]
+    lines = Arcs(flat[moved, :2], way / length[:, None], np.zeros(len(length)), length)
+    outline = bore.contour.as_arcs()[0]
+    return farthest(lines, outline, float(np.abs(outline.curvature).max()), fine)

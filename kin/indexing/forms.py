@@ -1,0 +1,435 @@
+"""The two forms of indexing cams: how a point stands to the turret, and what a roller's distance is made of.
+
+Axes: z is the cam's axis, mm and radians, heights are over that of the turret's centre. The cam stands still and the
+turret runs round it, counter-clockwise seen from +z, by the shaft angle theta; e_r and e_t are the radius and the way
+round at theta. A point is at X along e_r, Y along e_t and Z above. Every roller's axis lies in a plane that turns with
+theta, or square to it; in the plane of the turret the point has the coordinates (u, v), in which a roller at the angle
+psi is at cos psi, sin psi, and it is t away from that plane. So the distance from a roller's axis depends on theta
+through u, v and t alone, and on the turret through d, the point's polar angle less psi.
+
+`depth_of` counts the layers of both forms alike: 0 on the blank and growing into the metal, to `depth` on the floor.
+"""
+
+from __future__ import annotations
+
+import math
+from typing import TYPE_CHECKING, Protocol
+
+import numpy as np
+
+from kin.numeric.records import dataclass
+
+if TYPE_CHECKING:
+    from kin.law.contacts import Side
+    from kin.numeric.arrays import Array
+
+STEPS = 6  # of Newton's method
+NEAR = 1e-9  # mm, to which it leads
+
+
+class Form(Protocol):
+    """What a judge asks of a barrel or a globoid; arrays (n,) unless said otherwise, mm and rad."""
+
+    @property
+    def radius(self) -> float:
+        """Radius of the blank, mm; of a globoid that of its throat."""
+
+    @property
+    def depth(self) -> float:
+        """Depth of the track below the blank, mm."""
+
+    @property
+    def lever(self) -> float:
+        """Distance from the turret's axis at which a flank carries at most, mm."""
+
+    @property
+    def inwards(self) -> int:
+        """Which way along a roller its deeper end is."""
+
+    def developed(self, radius: float) -> float:
+        """Depth of the cylinder of a radius, mm; raises ValueError for a form whose layers are no cylinders."""
+
+    def met(self, radius: float, psi: Array) -> tuple[Array, Array]:
+        """Where rollers' axes at angles psi meet the cylinder of a radius: polar angle ahead of theirs, and height."""
+
+    def demand(self, stops: int, roller: float, ends: tuple[float, float]) -> None:
+        """Raise ValueError for a turret that such a form cannot have; `ends` are the heights of both faces."""
+
+    def depth_of(self, r: Array, z: Array) -> Array:
+        """Depth below the blank of points at a distance r from the cam's axis and a height z."""
+
+    def rims(self, depth: float, z: Array) -> Array:
+        """Distance from the cam's axis of the layer of a depth, at heights z."""
+
+    def plane(self, x: Array, y: Array, z: Array) -> tuple[Array, Array]:
+        """Coordinates u, v in the turret's plane."""
+
+    def beside(self, y: Array, u: Array, v: Array, psi: Array) -> tuple[Array, Array]:
+        """Place of a point beside a roller's axis at the angle psi, in two coordinates square to it, mm."""
+
+    def touch(self, s: Array, y: Array, radius: Array) -> Array:
+        """Angle |d| at which a roller of a radius touches the point; nan where it passes by."""
+
+    def slope(self, s: Array, d: Array) -> Array:
+        """Derivative of the squared distance by |d|."""
+
+    def along(self, x: Array, s: Array, d: Array) -> Array:
+        """Place of the point along the roller's axis, as the roller's ends are given."""
+
+    def across(self, way: Array, sine: Array, cosine: Array, psi: Array) -> Array:
+        """Squared lengths of ways (n, 3) square to an axis at the angle psi, at theta by its sine and cosine."""
+
+    def turning(self, slope: float) -> float:
+        """How fast an axis turns at most, per rad of theta, with so fast a turret."""
+
+    def window(self, r: Array, z: Array, reach: float) -> tuple[Array, Array]:
+        """Least and greatest polar angle less theta at which an axis may come within reach."""
+
+    def bends(self, slope: Array, curve: Array, near: tuple[float, float, float]) -> Array:
+        """Upper bounds of the second derivative of the squared distance by theta, over steps of it.
+
+        `near` is the reach, mm, within which an axis comes in a step, the step, rad, and the greatest r of a point, mm.
+        """
+
+    def costs(self, rho: Array, turret: tuple[Array, Array], radius: float) -> tuple[Array, Array, Array]:
+        """What an error of 1 mm at places along rollers costs, rad, and the depth and the height at which they touch.
+
+        `turret` is a roller's angle and its slope, `radius` that of the roller, below 0 for what it touches below it.
+        """
+
+    def depth_at(self, place: float) -> float:
+        """Depth of the layer that a roller reaches at a place along it, if it is level and on a radius of the cam."""
+
+    def bent(self, ways: Array, places: Array) -> tuple[Array, Array]:
+        """How far the depth may be above and below that of a plane, mm (t,), on triangles.
+
+        `ways` are their sides, (3, t, 3), and `places` (t, 3) their middles, heights over the turret's centre.
+        """
+
+    def swept(self, depth: Array, ahead: Array, psi: Array, reach: tuple[float, int]) -> Array:
+        """Height at which a roller at an angle psi leaves a layer at a polar angle that is `ahead` of its own.
+
+        `reach` is the roller's radius and the side, 1 above it. Heights are mm, of a globoid angles about the turret's
+        axis; nan where the roller does not meet the layer there.
+        """
+
+    def faces(self, depth: Array, ends: tuple[float, float]) -> tuple[Array, Array]:
+        """Heights, as `swept` has them, of both faces in layers."""
+
+    def measure(self, depth: Array, height: Array) -> Array:
+        """Antiderivative by the height of volume per depth and polar angle."""
+
+    def core(self, ends: tuple[float, float]) -> float:
+        """Volume below the floor without a bore, mm^3."""
+
+
+def spread(ways: Array) -> Array:
+    """Greatest sum of the products of two weights of corners times the squared side between them, mm^2 (t,).
+
+    Squared sides are (3, t). It is the squared radius of the least circle about a triangle with such sides: by so much,
+    times a second derivative and halved, a function may be off its plane through the corners.
+    """
+    ways = np.sort(ways, axis=0)
+    a, b, c = ways
+    twice = np.maximum(2.0 * (a * b + b * c + c * a) - (a * a + b * b + c * c), 1e-300)
+    return np.asarray(np.where(c >= a + b, 0.25 * c, a * b * c / twice))
+
+
+@dataclass(frozen=True)
+class Barrel:
+    """A barrel of a `radius`, mm, with a track of a `depth`, mm, for rollers that are parallel to a radius of the cam.
+
+    The turret's axis is parallel to that radius, at `offset`, mm, along e_t; the rollers' axes are `pitch`, mm, from
+    it, at y = offset - sense pitch cos psi. `sense` is 1 trailing, -1 leading.
+    """
+
+    radius: float
+    depth: float
+    offset: float
+    pitch: float
+    sense: Side = 1
+
+    @property
+    def lever(self) -> float:
+        """The pitch radius."""
+        return self.pitch
+
+    @property
+    def inwards(self) -> int:
+        """Places along a roller are counted from the cam's axis."""
+        return -1
+
+    def developed(self, radius: float) -> float:
+        """Below the blank's radius."""
+        return self.radius - radius
+
+    def met(self, radius: float, psi: Array) -> tuple[Array, Array]:
+        """Axes are parallel to the radius of the cam; nan where they pass the cylinder by."""
+        with np.errstate(invalid="ignore"):
+            ahead = np.arcsin((self.offset - self.sense * self.pitch * np.cos(psi)) / radius)
+        return ahead, np.where(np.isfinite(ahead), self.pitch * np.sin(psi), np.nan)
+
+    def demand(self, stops: int, roller: float, _ends: tuple[float, float]) -> None:
+        """Raise ValueError where the rollers on the turret overlap."""
+        if 2.0 * self.pitch * math.sin(math.pi / stops) <= 2.0 * roller:
+            raise ValueError("neighbouring rollers overlap")
+
+    def depth_of(self, r: Array, z: Array) -> Array:
+        """Depth below the blank."""
+        return np.asarray(self.radius - r + 0.0 * z)
+
+    def rims(self, depth: float, z: Array) -> Array:
+        """Radius of the cylinder of a depth."""
+        return np.asarray(self.radius - depth + 0.0 * z)
+
+    def plane(self, _x: Array, y: Array, z: Array) -> tuple[Array, Array]:
+        """The turret's plane is square to the rollers."""
+        return self.sense * (self.offset - y), z
+
+    def beside(self, _y: Array, u: Array, v: Array, psi: Array) -> tuple[Array, Array]:
+        """Axes are points of the turret's plane."""
+        return u - self.pitch * np.cos(psi), v - self.pitch * np.sin(psi)
+
+    def touch(self, s: Array, _y: Array, radius: Array) -> Array:
+        """By the law of cosines."""
+        half = (radius**2 - (s - self.pitch) ** 2) / (4.0 * self.pitch * s)
+        with np.errstate(invalid="ignore"):
+            angle: Array = 2.0 * np.arcsin(np.sqrt(half))
+        return angle
+
+    def slope(self, s: Array, d: Array) -> Array:
+        """Derivative of the law of cosines."""
+        return np.asarray(2.0 * self.pitch * s * np.sin(d))
+
+    def along(self, x: Array, _s: Array, _d: Array) -> Array:
+        """Distance from the cam's axis."""
+        return x
+
+    def across(self, way: Array, sine: Array, cosine: Array, _psi: Array) -> Array:
+        """All rollers point along e_r."""
+        over = way[:, 1] * cosine - way[:, 0] * sine
+        return np.asarray(over**2 + way[:, 2] ** 2)
+
+    def turning(self, _slope: float) -> float:
+        """They turn with e_r."""
+        return 1.0
+
+    def window(self, r: Array, z: Array, reach: float) -> tuple[Array, Array]:
+        """The circle of the axes is crossed at a height; where the far side of the turret is in reach, it counts."""
+        most = np.sqrt(np.maximum((self.pitch + reach) ** 2 - z**2, 0.0))
+        least = np.sqrt(np.maximum((self.pitch - reach) ** 2 - z**2, 0.0))
+        least = np.where(abs(self.offset) + least <= r, -most, least)
+        one, other = self.offset - self.sense * most, self.offset - self.sense * least
+        share = [np.clip(y / np.maximum(r, 1e-9), -1.0, 1.0) for y in (one, other)]
+        return np.arcsin(np.minimum(*share)), np.arcsin(np.maximum(*share))
+
+    def bends(self, slope: Array, curve: Array, near: tuple[float, float, float]) -> Array:
+        """With q the point and c the axis, |q - c|^2 bends by 2 |q' - c'|^2 + 2 (q - c).(q'' - c'')."""
+        reach, step, r = near
+        fast = r + self.pitch * slope
+        far = reach + fast * step
+        return np.asarray(2.0 * fast**2 + 2.0 * far * (r + self.pitch * (curve + slope**2)))
+
+    def costs(self, rho: Array, turret: tuple[Array, Array], radius: float) -> tuple[Array, Array, Array]:
+        """By the pressure angle, between the roller's way and the normal: (l psi' + s rho sin psi)/(rho cos psi)."""
+        psi, slope = turret
+        alpha = np.arctan2(self.pitch * slope + self.sense * rho * np.sin(psi), rho * np.cos(psi))
+        leaning = alpha - self.sense * psi
+        y = self.offset - self.sense * self.pitch * np.cos(psi) - radius * np.sin(leaning)
+        height = self.pitch * np.sin(psi) + radius * np.cos(leaning)
+        return 1.0 / (self.pitch * np.abs(np.cos(alpha))), self.depth_of(np.hypot(rho, y), height), height
+
+    def depth_at(self, place: float) -> float:
+        """Below the blank's radius."""
+        return self.radius - place
+
+    def bent(self, ways: Array, places: Array) -> tuple[Array, Array]:
+        """Across the axis chords run below the cylinder."""
+        return 0.5 * spread(_round(ways, places)[0]), np.zeros(len(places))
+
+    def swept(self, depth: Array, ahead: Array, psi: Array, reach: tuple[float, int]) -> Array:
+        """In the turret's plane a point of the cylinder goes up and down at its u."""
+        radius, side = reach
+        u, _ = self.plane(ahead, (self.radius - depth) * np.sin(ahead), ahead)
+        with np.errstate(invalid="ignore"):
+            height: Array = self.pitch * np.sin(psi) + side * np.sqrt(radius**2 - (u - self.pitch * np.cos(psi)) ** 2)
+        return height
+
+    def faces(self, depth: Array, ends: tuple[float, float]) -> tuple[Array, Array]:
+        """They are level."""
+        return np.full_like(depth, ends[0]), np.full_like(depth, ends[1])
+
+    def measure(self, depth: Array, height: Array) -> Array:
+        """Of a cylinder."""
+        return np.asarray((self.radius - depth) * height)
+
+    def core(self, ends: tuple[float, float]) -> float:
+        """A cylinder."""
+        return math.pi * (self.radius - self.depth) ** 2 * (ends[1] - ends[0])
+
+
+@dataclass(frozen=True)
+class Globoid:
+    """A globoid, whose turret has radial rollers about an axis square to the cam's and `distance`, mm, from it.
+
+    `radius`, mm, is that of the blank's throat about the turret's axis, `depth`, mm, goes from there away from the
+    turret. Rollers are rays from the turret's axis; their places rho are distances from it.
+    """
+
+    radius: float
+    depth: float
+    distance: float
+
+    @property
+    def lever(self) -> float:
+        """The floor's radius about the turret's axis."""
+        return self.radius + self.depth
+
+    @property
+    def inwards(self) -> int:
+        """Places along a roller are counted from the turret's axis."""
+        return 1
+
+    def developed(self, _radius: float) -> float:
+        """None: a torus does not unroll. Raises ValueError."""
+        raise ValueError("a globoid has no development")
+
+    def met(self, _radius: float, _psi: Array) -> tuple[Array, Array]:
+        """None: there is no development. Raises ValueError."""
+        raise ValueError("a globoid has no development")
+
+    def demand(self, stops: int, roller: float, ends: tuple[float, float]) -> None:
+        """Raise ValueError where rollers overlap in the throat, or the throat is no longer there at the ends."""
+        apart = self.radius * math.sin(min(2.0 * math.pi / stops, 0.5 * math.pi))
+        if apart <= 1.25 * roller or self.radius * math.sin(math.pi / stops) <= roller:
+            raise ValueError("neighbouring rollers overlap")
+        if max(abs(end) for end in ends) >= self.radius:
+            raise ValueError("the cam is longer than its throat is wide")
+        if self.radius + self.depth >= self.distance:
+            raise ValueError("the floor reaches the axis of the cam")
+
+    def depth_of(self, r: Array, z: Array) -> Array:
+        """Distance from the turret's circle of the turning turret, less the throat's."""
+        return np.asarray(np.hypot(self.distance - r, z) - self.radius)
+
+    def rims(self, depth: float, z: Array) -> Array:
+        """Distance from the cam's axis of a layer, which is a torus."""
+        wide = self.radius + depth
+        return np.asarray(self.distance - np.sqrt(np.maximum(wide**2 - z**2, 0.0)))
+
+    def plane(self, x: Array, _y: Array, z: Array) -> tuple[Array, Array]:
+        """The turret's plane has both axes of the cam, e_r and k."""
+        return self.distance - x, z
+
+    def beside(self, y: Array, u: Array, v: Array, psi: Array) -> tuple[Array, Array]:
+        """Axes are lines in the turret's plane through its centre."""
+        return y, u * np.sin(psi) - v * np.cos(psi)
+
+    def touch(self, s: Array, y: Array, radius: Array) -> Array:
+        """Within the plane a roller is as wide as the point's distance from it leaves."""
+        with np.errstate(invalid="ignore"):
+            angle: Array = np.arcsin(np.sqrt(radius**2 - y**2) / s)
+        return angle
+
+    def slope(self, s: Array, d: Array) -> Array:
+        """Derivative of the squared distance."""
+        return np.asarray(s**2 * np.sin(2.0 * d))
+
+    def along(self, _x: Array, s: Array, d: Array) -> Array:
+        """Distance from the turret's axis along the roller."""
+        return np.asarray(s * np.cos(d))
+
+    def across(self, way: Array, sine: Array, cosine: Array, psi: Array) -> Array:
+        """An axis lies along -cos psi e_r + sin psi k."""
+        out, over = way[:, 0] * cosine + way[:, 1] * sine, way[:, 1] * cosine - way[:, 0] * sine
+        return np.asarray(over**2 + (out * np.sin(psi) + way[:, 2] * np.cos(psi)) ** 2)
+
+    def turning(self, slope: float) -> float:
+        """They turn with e_r and on the turret."""
+        return math.hypot(1.0, slope)
+
+    def window(self, r: Array, _z: Array, reach: float) -> tuple[Array, Array]:
+        """All rollers pass through the line along e_r: at a reach from it, on the turret's side of the cam."""
+        wide = np.arcsin(np.clip(reach / np.maximum(r, 1e-9), 0.0, 1.0))
+        return -wide, wide
+
+    def bends(self, slope: Array, curve: Array, near: tuple[float, float, float]) -> Array:
+        """With y and x across and within the plane, y^2 + x^2 bends by 2 (y'^2 + y y'' + x'^2 + x x'').
+
+        There x = u sin psi - v cos psi, so that x' = u' sin psi + rho psi' and
+        x'' = u'' sin psi + 2 u' cos psi psi' + rho psi'' - x psi'^2, with u' = -y and u'' = X.
+        """
+        reach, step, r = near
+        beside = reach + r * step
+        far = self.radius + 1.1 * self.depth + r - math.sqrt(max(r**2 - beside**2, 0.0))
+        wide = reach + (r + beside + far * slope) * step
+        within = (wide + far * slope) ** 2 + wide * (r + 2.0 * wide * slope + far * curve + wide * slope**2)
+        return np.asarray(2.0 * (r**2 + wide**2 + within))
+
+    def costs(self, rho: Array, turret: tuple[Array, Array], radius: float) -> tuple[Array, Array, Array]:
+        """By the pressure angle, between the roller's way and the normal: rho psi'/(C - rho cos psi)."""
+        psi, slope = turret
+        alpha = np.arctan2(rho * slope, self.distance - rho * np.cos(psi))
+        up = radius * np.cos(alpha)
+        out = self.distance - rho * np.cos(psi) + up * np.sin(psi)
+        height = rho * np.sin(psi) + up * np.cos(psi)
+        r = np.hypot(out, radius * np.sin(alpha))
+        return 1.0 / (rho * np.cos(alpha)), self.depth_of(r, height), height
+
+    def depth_at(self, place: float) -> float:
+        """Beyond the throat's radius."""
+        return place - self.radius
+
+    def bent(self, ways: Array, places: Array) -> tuple[Array, Array]:
+        """Round the cam's axis chords run deeper, along the throat they run outside the torus."""
+        over, r = _round(ways, places)
+        wide = np.hypot(self.distance - np.hypot(places[:, 0], places[:, 1]), places[:, 2])
+        longest = np.sqrt((ways**2).sum(axis=2)).max(axis=0)
+        along = np.maximum((ways**2).sum(axis=2) - over * r, 0.0) + longest**4 / np.maximum(wide - longest, 1e-9) ** 2
+        return 0.5 * spread(over), 0.5 * spread(along) / np.maximum(wide - longest, 1e-9)
+
+    def swept(self, depth: Array, ahead: Array, psi: Array, reach: tuple[float, int]) -> Array:
+        """By Newton's method along the circle of the layer, from a place straight above the roller."""
+        radius, side = reach
+        wide = self.radius + depth
+        height = psi + side * np.arcsin(radius / wide)
+        one, other = np.sin(ahead), np.cos(ahead)
+        sine, cosine = np.sin(psi), np.cos(psi)
+        for _ in range(STEPS):
+            up, out = wide * np.sin(height), wide * np.cos(height)
+            y, x = (self.distance - out) * one, (self.distance - (self.distance - out) * other) * sine - up * cosine
+            rate = 2.0 * (y * up * one - x * (up * other * sine + out * cosine))
+            with np.errstate(divide="ignore", invalid="ignore"):
+                height = height - np.clip((y * y + x * x - radius**2) / rate, -0.1, 0.1)
+        off = np.abs(y * y + x * x - radius**2)
+        return np.asarray(np.where((off < NEAR * radius) & (np.abs(y) < radius) & (side * -x > 0.0), height, np.nan))
+
+    def faces(self, depth: Array, ends: tuple[float, float]) -> tuple[Array, Array]:
+        """Angles at which the circle of a layer meets them."""
+        wide = self.radius + depth
+        return np.arcsin(ends[0] / wide), np.arcsin(ends[1] / wide)
+
+    def measure(self, depth: Array, height: Array) -> Array:
+        """Of a torus."""
+        wide = self.radius + depth
+        return np.asarray(wide * (self.distance * height - wide * np.sin(height)))
+
+    def core(self, ends: tuple[float, float]) -> float:
+        """Within a torus, by the squares of distances from the cam's axis."""
+        wide, c = self.radius + self.depth, self.distance
+        heights = np.array(ends)
+        root = np.sqrt(wide**2 - heights**2)
+        low, high = (
+            (c**2 + wide**2) * heights - heights**3 / 3.0 - c * (heights * root + wide**2 * np.arcsin(heights / wide))
+        )
+        return math.pi * float(high - low)
+
+
+def _round(ways: Array, places: Array) -> tuple[Array, Array]:
+    """Squares of sides (3, t) round the cam's axis, over the least distance from it, mm, and that distance (t,)."""
+    r = np.hypot(places[:, 0], places[:, 1])
+    level = np.hypot(ways[..., 0], ways[..., 1])
+    least = np.maximum(r - level.max(axis=0), 1e-9)
+    over = np.abs(ways[..., 1] * places[:, 0] - ways[..., 0] * places[:, 1]) / np.maximum(r, 1e-9)
+    turned = level.max(axis=0) / least * level
+    return np.minimum(over + turned, level) ** 2 / least, least

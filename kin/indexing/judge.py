@@ -1,0 +1,312 @@
+"""The verdict on a file of an indexing cam: whether it is the intended cam, and its turret moves as intended.
+
+A solid is taken as it lies on disk. The way it was made is not known here: the exact metal is what rollers leave of the
+blank at all angles (`kin.indexing.rollers`), the motion is that of a turret held by the file's own triangles. Every
+triangle is measured against a face of the intended cam. Together with a closed surface and the volume that says that
+nothing is missing: a closed surface all of which is near that of the cam goes round it once, if it encloses as much.
+"""
+
+from __future__ import annotations
+
+import math
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from kin.indexing.contour import Known, Peak, bare, edges_of, proud
+from kin.indexing.faces import BLANK, BORE, BOTTOM, FLOOR, TOP, Body, plain_offs, sorted_faces
+from kin.indexing.holding import angles_for, by_error, held
+from kin.indexing.rollers import Rollers
+from kin.indexing.verdict import FlankVerdict, IndexVerdict, MotionError, Play
+from kin.indexing.volume import exact_volume
+from kin.numeric.angles import TURN, degrees
+from kin.numeric.check import ROUNDING, Check, about, at_most, failed
+from kin.numeric.errors import UnsettledError
+from kin.numeric.lengths import UNIT, amount_words, length_words
+from kin.numeric.limits import is_loose, limit_of, unlimited
+from kin.numeric.records import dataclass, replace
+from kin.read.checks import count_check, demand_same, units_check, unread_check
+from kin.read.errors import ReadError
+from kin.read.files import read_mesh
+from kin.read.formats import format_of
+from kin.read.mesh.split import joined
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+    from pathlib import Path
+
+    from kin.indexing.contour import Edged
+    from kin.indexing.faces import Faces
+    from kin.indexing.holding import Held
+    from kin.indexing.intent import Developed, IndexIntent, Limits
+    from kin.law.contacts import Side
+    from kin.numeric.arrays import Array, Indices, Mask
+    from kin.read.mesh.checked import CheckedMesh
+
+WATERTIGHT, MOTION, PLAY, CONTOUR, ENDS, VOLUME = "watertight", "motion", "form-closure", "contour", "ends", "volume"
+OPEN = 0.25  # of the tolerance: what the proof may leave open, and is told
+SLACK = 1e-6  # of a limit that follows from the steepest place
+SIDES: tuple[tuple[str, Side], ...] = (("lower", -1), ("upper", 1))
+
+
+def verify(path: Path, intent: IndexIntent, limits: Limits, units: float | None = None) -> IndexVerdict:
+    """Judge a solid of triangles by the suffix of its file, over all shaft angles.
+
+    `units`, mm, is the unit of a file that states none; None is mm. A file from which no mesh can be read gets a
+    verdict that says why. Raises OSError where the disk refuses, ValueError for a suffix of files without meshes.
+    """
+    kind = format_of(path)
+    try:
+        read = read_mesh(path, units)
+    except ReadError as error:
+        return IndexVerdict(kind.name, (about(unread_check("solid", error), path.name),))
+    verdict = judge_mesh(read, intent, limits, kind.name)
+    return replace(verdict, checks=tuple(about(check, path.name) for check in verdict.checks))
+
+
+def verify_development(
+    path: Path, intent: IndexIntent, lines: Sequence[Developed], limits: Limits, units: float | None = None
+) -> IndexVerdict:
+    """Judge a development's DXF line by line, each for the radius at which it is unrolled, and for no other.
+
+    A line may go on beyond one turn, as an overlap does. `units`, mm, is the unit of a file that states none. Raises
+    OSError where the disk refuses, UnitsError where the file states another unit than `units`, ValueError for a file
+    that is no DXF and for a globoid.
+    """
+    from kin.indexing.development import judged_line
+    from kin.read.drawing.straight import read_lines
+
+    kind = format_of(path)
+    if kind.name != "dxf":
+        raise ValueError(f"{path.name} is no DXF")
+    for line in lines:
+        intent.form.developed(line.radius)
+    try:
+        stated, read = read_lines(path, [line.layer for line in lines])
+    except ReadError as error:
+        return IndexVerdict(kind.name, (about(unread_check(kind.contents, error), path.name),))
+    demand_same(stated, units, path)
+    mm = stated or units or intent.mm
+    widest = max((float(np.ptp(part[:, 0])) for parts in read.values() for part in parts), default=0.0)
+    turn = TURN * max((line.radius for line in lines), default=1.0)
+    checks = [units_check(stated, units, intent.mm, lambda: intent.mm * widest / turn)]
+    verdicts, drawn = [], []
+    for line in lines:
+        parts = [mm * part * ([-1.0, 1.0] if intent.mirrored else [1.0, 1.0]) for part in read[line.layer]]
+        drawn += [(line.layer, part) for part in parts]
+        flank, own = judged_line(parts, intent, line, limits)
+        verdicts.append(flank)
+        checks += [replace(check, surface=line.layer) for check in own]
+    told = tuple(about(check, path.name) for check in checks)
+    return IndexVerdict(kind.name, told, tuple(verdicts), units=mm, lines=tuple(drawn))
+
+
+def judge_mesh(read: CheckedMesh, intent: IndexIntent, limits: Limits, kind: str = "") -> IndexVerdict:
+    """Judge a mesh, mm, as its file has it; corners that it keeps apart by less than the tolerance are joined."""
+    read, count, apart = joined(read, limits.tolerance)
+    closed = count_check(WATERTIGHT, list(read.faults))
+    told = f"joined at {count} corners that the file keeps up to {length_words(apart, '.2g')} {UNIT} apart"
+    checks = [replace(closed, detail=told) if count else closed]
+    flanks: list[FlankVerdict] = []
+    play = None
+    try:
+        job = _Judged.of(read, intent, limits)
+        checks += job.plain()
+        seen = []
+        for name, side in SIDES:
+            verdict, own, found = job.flank(name, side)
+            flanks.append(verdict)
+            checks += [replace(check, surface=name) for check in found]
+            seen.append(own)
+        one, other = seen
+        if one is not None and other is not None:
+            play, check = play_of(job, one, other)
+            checks.append(check)
+        area = 0.5 * float(np.sqrt(sum(part * part for part in read.mesh.area_vectors)).sum())
+        checks.append(_volume_check(job.rollers, (read.mesh.volume, area)))
+    except UnsettledError as error:
+        checks.append(failed(CONTOUR, str(error), unit="mm", limit=limits.tolerance))
+    return IndexVerdict(kind, tuple(checks), tuple(flanks), play, read.units_mm or 1.0, read.mesh)
+
+
+@dataclass(frozen=True, eq=False)
+class _Judged:
+    """A file being judged: the rollers it is held against, and the rounding of its places, `slack`, mm."""
+
+    rollers: Rollers
+    limits: Limits
+    slack: float
+    body: Body
+    faces: Faces
+    known: Known
+
+    @staticmethod
+    def of(read: CheckedMesh, intent: IndexIntent, limits: Limits) -> _Judged:
+        """Sort a mesh by faces, and set the rollers beside its corners."""
+        rollers = Rollers(intent, limits.tolerance)
+        body = Body.of(read.mesh, intent)
+        slack = read.rounding * math.sqrt(3.0) + ROUNDING * float(np.abs(body.points).max())
+        tolerance = limits.tolerance + slack
+        rest = np.flatnonzero(_least(plain_offs(body, intent, tolerance)) > tolerance)
+        body = body.divided(intent, rest, rollers.longest)
+        offs = plain_offs(body, intent, tolerance)
+        rest = np.flatnonzero(_least(offs) > tolerance)
+        asked = np.zeros(len(body.points), dtype=np.bool_)
+        asked[body.corners[rest]] = True
+        # blank and ends may not be in a roller's way either
+        plain = np.minimum.reduce([offs[name] for name in (BLANK, BOTTOM, TOP)]) <= tolerance
+        asked[body.corners[plain]] |= (body.depth < intent.form.depth - tolerance)[body.corners[plain]]
+        known = Known.of(rollers, body, np.flatnonzero(asked))
+        away = np.full(len(body.corners), np.inf)
+        away[rest] = np.abs(known.distance[body.corners[rest]]).max(axis=1)
+        return _Judged(rollers, limits, slack, body, sorted_faces(body, intent, offs, away, tolerance), known)
+
+    def plain(self) -> list[Check]:
+        """Checks of blank, floor, ends and bore."""
+        intent, off, tolerance = self.rollers.intent, self.faces.off, self.limits.tolerance
+        checks = []
+
+        def check(name: str, worst: float, detail: str) -> None:
+            if math.isnan(worst):
+                checks.append(failed(name, f"nothing is there; {detail}", unit="mm", limit=tolerance))
+            else:
+                checks.append(at_most(name, worst, tolerance, "mm", detail=detail, slack=self.slack))
+
+        check(BLANK, off[BLANK], f"from a radius of {length_words(intent.form.radius)} {UNIT}")
+        room = intent.form.depth - max(intent.form.depth_at(place) for place in (intent.inner, intent.outer))
+        told = f"the roller ends {length_words(abs(room), '.3g')} {UNIT} {'above it' if room > 0.0 else 'below it'}"
+        check(FLOOR, off[FLOOR], f"from a depth of {length_words(intent.form.depth)} {UNIT} below the blank; {told}")
+        checks[-1] = replace(checks[-1], ok=checks[-1].ok and room > 0.0)
+        worst = math.nan if math.isnan(off[BOTTOM] + off[TOP]) else max(off[BOTTOM], off[TOP])
+        check(ENDS, worst, f"from z = {length_words(0.0)} and {length_words(intent.length)} {UNIT}")
+        if intent.bore is not None:
+            check(BORE, off[BORE], f"from {intent.bore.name}")
+        return checks
+
+    def flank(self, name: str, side: Side) -> tuple[FlankVerdict, Held | None, list[Check]]:
+        """Verdict on one flank, what it holds, and its checks."""
+        rollers, known, body = self.rollers, self.known, self.body
+        which = np.flatnonzero(self.faces.flanks)
+        votes = np.where(known.above[body.corners[which]], 1, -1).sum(axis=1)
+        which = which[votes * side > 0]
+        limit = self.limits.tolerance
+        if not len(which):
+            return FlankVerdict(name), None, [failed(CONTOUR, "the flank is missing", unit="mm", limit=limit)]
+        edged = edges_of(rollers, body, known, which)
+        asked = np.isfinite(known.distance) & (known.above == (side > 0))
+        out = proud(rollers, known, edged, np.flatnonzero(asked & self._beside(which)))
+        within = bare(rollers, body, known, which)
+        check, worst = contour_check(out, within, limit, self.slack)
+        count = angles_for(rollers)
+        holds = held(rollers, body, known, (which, side), count)
+        if not np.isfinite(holds.between).all():
+            angle = degrees(int(np.argmin(np.isfinite(holds.between))) * TURN / count)
+            loose = failed(MOTION, f"the turret touches nothing at an angle of {angle:.6g} degrees", unit="deg")
+            return FlankVerdict(name, None, worst, len(which)), None, [check, loose]
+        motion = motion_error(holds, self._pushed(edged, np.flatnonzero(asked)))
+        checks = [check, motion_check(rollers, motion, self.limits, self.slack, by_error(rollers, side))]
+        return FlankVerdict(name, motion, worst, len(which)), holds, checks
+
+    def _beside(self, which: Indices) -> Mask:
+        """Corners (v,) that have to be out of what rollers sweep: of a flank, and of blank and ends above the floor."""
+        found = np.zeros(len(self.body.points), dtype=np.bool_)
+        for name in (BLANK, BOTTOM, TOP):
+            found[self.body.corners[self.faces.of(name)]] = True
+        found[self.body.corners[self.faces.of(FLOOR)]] = False
+        found[self.body.corners[which]] = True
+        return found
+
+    def _pushed(self, edged: Edged, own: Indices) -> Peak:
+        """How far a flank pushes the turret out of its place at most, rad, by its corners and edges."""
+        known, intent = self.known, self.rollers.intent
+        within = (known.along >= intent.inner) & (known.along <= intent.outer)
+        own = own[within[own]]
+        # a corner whose roller passes right through it has no angle at which that touches
+        gives = np.where(np.isfinite(known.gives), known.gives, np.where(known.distance < 0.0, math.pi, -math.pi))
+        k = int(gives[own].argmax()) if len(own) else 0
+        peak = (
+            Peak(float(gives[own[k]]), 0.0, float(known.worst.theta[own[k]])) if len(own) else Peak(-math.pi, 0.0, 0.0)
+        )
+        reach = np.stack([known.along[edged.start], known.along[edged.last]])
+        beside = (reach.max(axis=0) >= intent.inner) & (reach.min(axis=0) <= intent.outer)
+        slope = np.minimum(known.slope[edged.start], known.slope[edged.last])
+        most = (edged.worst.open - edged.worst.excess)[beside] / slope[beside]
+        return peak._replace(remainder=max(0.0, float(most.max(initial=-math.inf)) - peak.value))
+
+
+def _least(offs: dict[str, Array]) -> Array:
+    """Distance (t,) from the nearest plain face."""
+    least: Array = np.minimum.reduce(list(offs.values()))
+    return least
+
+
+def contour_check(out: Peak, within: Peak, tolerance: float, slack: float) -> tuple[Check, float]:
+    """Check of the distance of a flank's surface, mm, out of the metal and into it, and the greater distance."""
+    worst = max(_assured(peak.value, peak.remainder, tolerance) for peak in (out, within))
+    words = " and ".join(
+        f"{length_words(max(peak.value, 0.0), '.3g')} {UNIT} {way}" for peak, way in ((out, "proud"), (within, "bare"))
+    )
+    told = f"true within {length_words(max(out.remainder, within.remainder), '.2g')} {UNIT}"
+    check = at_most(CONTOUR, worst, tolerance, "mm", detail=f"{words} of the exact flank; {told}", slack=slack)
+    at = out.at if out.value >= within.value else within.at
+    return replace(check, at=degrees(at) if math.isfinite(at) else None), worst
+
+
+def motion_error(holds: Held, pushed: Peak) -> MotionError:
+    """Error of the turret on a flank, by what it holds and how far it pushes the turret at most, rad."""
+    k = int(holds.at.argmin())
+    least, most = float(holds.at[k]), max(pushed.value, float(holds.at.max()))
+    bound = max(pushed.value + pushed.remainder, most, -float(holds.between.min()))
+    worst, at = (-least, k * TURN / len(holds.at)) if -least > most else (most, pushed.at)
+    rms = float(np.sqrt(np.mean(holds.at**2)))
+    left = max(bound - worst, 0.0)
+    worst, left, least, most, rms = (math.degrees(one) for one in (worst, left, least, most, rms))
+    return MotionError(worst, degrees(at), left, least, most, rms)
+
+
+def motion_check(rollers: Rollers, motion: MotionError, limits: Limits, slack: float, cost: float) -> Check:
+    """Check of the motion on a flank, deg; `cost` is what an error of the flank of 1 mm costs at most, rad."""
+    given = None if limits.motion is None else math.degrees(limits.motion)
+    cost = math.degrees(cost * (1.0 + SLACK))
+    limit, room = limit_of(lambda e: e * cost, given, limits.tolerance, slack)
+    worst = _assured(motion.max, motion.remainder, cost * limits.tolerance) if given is None else motion.bound
+    detail = f"true within {amount_words(motion.remainder, 'deg', '.2g')}" if motion.remainder else ""
+    check = replace(at_most(MOTION, worst, limit, "deg", detail=detail, slack=room), at=motion.at)
+    direct = math.degrees(limits.tolerance / rollers.intent.form.lever)
+    loose = given is None and is_loose(limit, direct, lambda: math.degrees(rollers.intent.pitch))
+    return unlimited(check) if loose else check
+
+
+def play_of(job: _Judged, lower: Held, upper: Held) -> tuple[Play, Check]:
+    """Play of the turret between all flanks, and the check on that of the gauges, which should fit without any."""
+    rollers, limits = job.rollers, job.limits
+    count = len(lower.at)
+    own = -np.degrees(lower.own + upper.own)
+    least, most = int(own.argmin()), int(own.argmax())
+    places = [degrees(k * TURN / count) for k in (least, most)]
+    play = Play(float(own[least]), places[0], float(own[most]), places[1], count)
+    cost = math.degrees(sum(by_error(rollers, side) for _, side in SIDES) * (1.0 + SLACK))
+    given = None if limits.play is None else math.degrees(limits.play)
+    limit, room = limit_of(lambda e: e * cost, given, limits.tolerance, job.slack)
+    told = f"the turret's own play is {play.least:.6g} to {play.most:.6g} deg"
+    if play.least < 0.0:
+        told += f": it is pinched by up to {-play.least:.3g} deg"
+    pinched = np.degrees(np.abs(lower.at + upper.at))
+    k = int(pinched.argmax())
+    check = at_most(PLAY, float(pinched[k]), limit, "deg", detail=told, slack=room)
+    return play, replace(check, at=degrees(k * TURN / count))
+
+
+def _assured(value: float, remainder: float, tolerance: float) -> float:
+    """A value found, or its bound where the proof leaves more open than a share of the tolerance, all in one unit."""
+    return value if remainder <= OPEN * tolerance else value + remainder
+
+
+def _volume_check(rollers: Rollers, measured: tuple[float, float]) -> Check:
+    """Check of a solid's volume, mm^3, by that of its surface within the tolerance; `measured` is with its area."""
+    (expected, remainder), (volume, area) = exact_volume(rollers), measured
+    detail = f"{length_words(volume, '.9g', 3)} {UNIT}^3, by the intent {length_words(expected, '.9g', 3)}"
+    if remainder:
+        detail += f", known within {length_words(remainder, '.2g', 3)} {UNIT}^3"
+    off = abs(volume - expected) + remainder
+    return at_most(VOLUME, off, rollers.tolerance * area, "mm^3", detail=detail, slack=ROUNDING * expected)

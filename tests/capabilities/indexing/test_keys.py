@@ -1,0 +1,292 @@
+"""Faults of an indexing cam's recipe: each names its line, its field and a change that helps.
+
+Holds: camgeo.capabilities.indexing.reading, camgeo.capabilities.indexing.keys,
+camgeo.capabilities.indexing.index_recipe, camgeo.capabilities.indexing.soundness,
+camgeo.capabilities.indexing.exact.
+"""
+
+from __future__ import annotations
+
+import math
+import re
+from typing import TYPE_CHECKING
+
+import pytest
+from capabilities.indexing.made_indexers import BARREL, GLOBOID, changed, design_of, recipe_of, shared_design
+
+import camgeo
+from camgeo.recipe.recipe import load_text
+from camgeo.recipe.starter import starter
+from camgeo.schema.errors import RecipeErrors
+
+if TYPE_CHECKING:
+    from pathlib import Path
+
+SMALL = changed(
+    BARREL, ("stops: 6, radius: 60, roller: 9", "stops: 6, radius: 25, roller: 4"), ("length: 80", "length: 36")
+)
+REFUSED = [
+    (BARREL, ("radius: 50", "rdius: 50"), "cam.barrel.rdius: unknown key; did you mean radius?"),
+    (BARREL, ("  depth", "  globoid: {distance: 90, radius: 49}\n  depth"), "give exactly one of barrel or globoid"),
+    (BARREL, ("  barrel: {radius: 50}\n", ""), "cam: needs barrel or globoid; give exactly one of them"),
+    (BARREL, ("stops: 6", "stops: 1"), "cam.turret.stops: below 2, given 1; give a whole number from 2 to 60"),
+    (
+        BARREL,
+        (", radius: 60", ""),
+        "cam.turret.radius: missing, needed with a barrel; give the distance of the rollers",
+    ),
+    (GLOBOID, ("stops: 8", "stops: 8, radius: 60"), "cam.turret.radius: does not go with a globoid; leave it out"),
+    (GLOBOID, ("stops: 8", "stops: 8, side: leading"), "cam.turret.side: does not go with a globoid; leave it out"),
+    (
+        BARREL,
+        ("roller: 9", "roller: 9, clearance: 0.1, preload: 0.1"),
+        "cam.turret.preload: does not go with clearance; leave one of them out",
+    ),
+    (BARREL, ("roller: 9", "roller: 9, preload: 9"), "given 9 mm; give a few hundredths of a mm, less than 9 mm"),
+    (
+        BARREL,
+        ("rise: 60", "rise: 59"),
+        "advances by 59 degrees a turn, not by 60 degrees, 360/6; let the motion end 60",
+    ),
+    (BARREL, ("rise: 60", "rise: 59.99999"), None),
+    (BARREL, ("{dwell: 210}", "{dwell: 200}"), "given 350 degrees; let them cover the whole turn, 360 degrees"),
+    (
+        BARREL,
+        ("cycloidal", "constant-velocity"),
+        "cam.motion: the motion does not join: S' jumps from 22.9183 to 0 deg/rad",
+    ),
+    (
+        BARREL,
+        ("[{rise: 60, over: 150, law: cycloidal}, {dwell: 210}]", "{formula: '60*t*t/(4*pi*pi)'}"),
+        "where one turn follows the other; let the motion begin and end with one velocity, as laws",
+    ),
+    (BARREL, ("over: 150", "over: least"), "cam.motion[0].over: not a number"),
+    (
+        BARREL,
+        ("roller: 9", "roller: 9, from: 37"),
+        "stands on the floor, given 37 mm; give more than 37 mm, or a greater",
+    ),
+    (BARREL, ("roller: 9", "roller: 9, from: 37.1"), None),
+    (BARREL, ("roller: 9", "roller: 9, from: 40, to: 39"), "bears nowhere; let it bear between 37 mm and 50 mm"),
+    (GLOBOID, ("roller: 8", "roller: 8, to: 62.5"), "stands on the floor, given 62.5 mm; give less than 62.5 mm"),
+    (GLOBOID, ("roller: 8", "roller: 8, to: 62.4"), None),
+    (GLOBOID, ("roller: 8", "roller: 8, to: 48"), "bears nowhere; let it bear between 49 mm and 62.5 mm"),
+    (BARREL, ("depth: 13", "depth: 0.4"), "cam.depth: the roller bears nowhere; give more than 0.5 mm"),
+    (BARREL, ("depth: 13", "depth: 0.6"), None),
+    (BARREL, ("depth: 13", "depth: 45"), "given 45 mm; give less than 41 mm, or a smaller roller"),
+    (
+        changed(BARREL, ("radius: 50", "radius: 9"), ("depth: 13", "depth: 2")),
+        ("stops", "stops"),
+        "give a smaller roller, or a larger blank",
+    ),
+    (GLOBOID, ("[stl]", "[dxf]"), "export.files[0]: a globoid has no development; give stl, 3mf or ply"),
+    (BARREL, ("[stl]", "[{dxf: {at: [20]}}]"), "no flank there, given 20 mm; give one from 37 mm to 50 mm"),
+    (BARREL, ("[stl]", "[{dxf: {at: [outer, 37, 50]}}]"), None),
+    (BARREL, ("[stl]", "[{dxf: {at: [outr]}}]"), "give a length above 0 in mm, or outer for the blank"),
+    (BARREL, ("[stl]", "[{dxf: {at: [40, 40]}}]"), "the same radius twice"),
+    (BARREL, ("[stl]", "[step]"), "step is not made yet of an indexing cam; give stl, 3mf or ply"),
+    (BARREL, ("[stl]", "[svg]"), "svg is not made yet of an indexing cam; give stl, 3mf or ply"),
+    (BARREL, ("[stl]", "[{csv: {step: 1e-9}}]"), "step: below 0.001, given 1e-9; give an angle from 0.001 to 90"),
+    (BARREL, ("export:", "limits: {velocity: {at_most: 9}}\nexport:"), "velocity needs cam.drive.rpm; give that"),
+    (BARREL, ("export:", "limits: {play: {at_most: 9}}\nexport:"), "play needs cam.turret.clearance; give that"),
+    (BARREL, ("export:", "limits: {torque: {at_most: 9}}\nexport:"), "needs cam.drive.load, or rpm and inertia"),
+    (BARREL, ("export:", "limits: {contact-pressure: {at_most: 9}}\nexport:"), "needs cam.drive.load and material"),
+    (BARREL, ("export:", "limits: {mass: {at_most: 9}}\nexport:"), "mass needs part.density; give that"),
+    (BARREL, ("export:", "limits: {rib-thickness: {at_least: 2}}\nexport:"), None),
+    (
+        BARREL,
+        ("  motion", "  drive: {material: steel}\n  motion"),
+        "cannot stand without load, or rpm and inertia; give",
+    ),
+    (BARREL, ("  motion", "  drive: {material: steel, rpm: 9, inertia: 0.1}\n  motion"), None),
+    (BARREL, ("  motion", "  drive: {inertia: 0.1}\n  motion"), "cannot stand without rpm; give rpm beside it"),
+    (BARREL, ("  motion", "  drive: {load: 9, roller_material: steel}\n  motion"), "give material beside it"),
+    (BARREL, ("part:", "linkage: {kind: four-bar}\npart:"), "a cam of kind indexing takes no linkage; leave it out"),
+    (BARREL, ("part:", "sweep: {a: 1}\npart:"), "a cam of kind indexing takes no sweep; leave it out"),  # needs: sweep
+    (BARREL, ("bore: 24", "hub: {diameter: 30}, bore: 24"), "part.hub: unknown key; the keys here are length, bore"),
+    (BARREL, ("bore: 24", "chamfer: 1, bore: 24"), "part.chamfer: unknown key"),
+    (BARREL, ("bore: 24, ", ""), "part.keyway: needs part.bore: a keyway is cut into a bore; give part.bore"),
+    (BARREL, ("export:", "manufacture: {cutter: 20}\nexport:"), "manufacture: not made yet; leave it out"),
+    (BARREL, ("export:", "made: {profile: 0.02}\nexport:"), "made: not made yet; leave it out"),
+]
+
+
+@pytest.mark.parametrize(("text", "change", "wanted"), REFUSED, ids=lambda item: "" if item == BARREL else None)
+def test_a_fault_names_its_remedy(text: str, change: tuple[str, str], wanted: str | None) -> None:
+    """A row without words is a neighbour that is taken."""
+    text = changed(text, change)
+    if wanted is None:
+        design_of(text)
+        return
+    with pytest.raises(RecipeErrors) as error:
+        design_of(text)
+    assert wanted in str(error.value)
+    assert re.match(r"index\.yaml:\d+:\d+: ", str(error.value))
+
+
+REMEDIES = [
+    (BARREL, ("roller: 9", "roller: 31"), r"give less than ([\d.]+) mm, or fewer", ("roller: 31", "roller: {}"), 0.3),
+    (
+        GLOBOID,
+        ("roller: 8", "roller: 20"),
+        r"give less than ([\d.]+) mm, or fewer",
+        ("roller: 20", "roller: {}"),
+        0.5,
+    ),
+    (BARREL, ("length: 80", "length: 90"), r"length of at most ([\d.]+) mm, with", ("length: 90", "length: {}"), 1.0),
+    (
+        BARREL,
+        ("{radius: 50}", "{radius: 50, offset: 5}"),
+        r"give one between ([\d.]+) mm",
+        ("offset: 5", "offset: {}"),
+        2.4,
+    ),
+    (BARREL, ("length: 80", "length: 110"), r"give less than ([\d.]+) mm, with", ("length: 110", "length: {}"), 0.85),
+    (BARREL, ("length: 80", "length: 140"), r"give less than ([\d.]+) mm, with", ("length: 140", "length: {}"), 0.85),
+    (GLOBOID, ("length: 60", "length: 100"), r"give less than ([\d.]+) mm, with", ("length: 100", "length: {}"), 0.9),
+    (GLOBOID, ("distance: 90", "distance: 60"), r"give more than ([\d.]+) mm", ("distance: 60", "distance: {}"), 1.2),
+    (BARREL, ("roller: 9", "roller: 14"), r"radius of at most ([\d.]+) mm", ("roller: 14", "roller: {}"), 1.0),
+    (BARREL, ("cycloidal", "{uniform: {blend: 10}}"), r"radius of at most ([\d.]+)", ("roller: 9", "roller: {}"), 1.0),
+    (
+        changed(GLOBOID, ("240", "320")),
+        ("over: 120", "over: 40"),
+        r"radius of at most ([\d.]+) mm",
+        ("roller: 8", "roller: {}"),
+        1.0,
+    ),
+]
+
+
+@pytest.mark.parametrize(("text", "change", "told", "size", "share"), REMEDIES)
+def test_remedies_of_a_size_hold(
+    text: str, change: tuple[str, str], told: str, size: tuple[str, str], share: float
+) -> None:
+    """The size that a message names, or one a share of it off where it is but a bound, makes a cam."""
+    text = changed(text, change)
+    with pytest.raises(RecipeErrors) as error:
+        design_of(text)
+    found = re.search(told, str(error.value))
+    assert found is not None, str(error.value)
+    design_of(changed(text, (size[0], size[1].format(share * float(found[1])))))
+
+
+def test_rollers_that_meet_the_cam_behind_the_turret() -> None:
+    """A small turret beside a large barrel: a larger one, with its axis farther off by as much, clears it."""
+    with pytest.raises(RecipeErrors) as error:
+        design_of(SMALL)
+    assert "the rollers meet the cam on their way back, behind the turret's axis; give a larger one" in str(error.value)
+    offset = recipe_of(SMALL).turret.sizes["offset"]
+    larger = changed(SMALL, ("radius: 25", "radius: 45"), ("{radius: 50}", f"{{radius: 50, offset: {offset + 20.0}}}"))
+    design_of(larger)
+
+
+def test_a_length_that_does_not_serve_alone_is_not_offered() -> None:
+    """Where a shorter cam would be undercut, a longer step alone is."""
+    text = changed(BARREL, ("{radius: 50}", "{radius: 50, offset: 32}"))
+    with pytest.raises(RecipeErrors) as error:
+        design_of(text)
+    assert str(error.value).endswith("give a longer rise")
+    shorter = changed(BARREL, ("over: 150", "over: 90"), ("210", "270"))
+    with pytest.raises(RecipeErrors) as error:
+        design_of(shorter)
+    found = re.search(r"give a longer rise, or a length of at most ([\d.]+) mm", str(error.value))
+    assert found is not None
+    design_of(changed(shorter, ("length: 80", f"length: {found[1]}")))
+    design_of(changed(shorter, ("over: 90", "over: 180"), ("270", "180")))
+
+
+def test_rollers_that_leave_no_rib() -> None:
+    """Rollers that nearly touch one another cut the rib between them away; the smaller ones named leave one."""
+    text = changed(
+        GLOBOID,
+        ("stops: 8, roller: 8", "stops: 8, roller: 18.5"),
+        ("distance: 90", "distance: 120"),
+        ("over: 120", "over: 240"),
+        ("dwell: 240", "dwell: 120"),
+    )
+    with pytest.raises(RecipeErrors) as error:
+        design_of(text)
+    found = re.search(r"roller radius of at most ([\d.]+) mm", str(error.value))
+    assert found is not None, str(error.value)
+    design_of(changed(text, ("roller: 18.5", f"roller: {found[1]}")))
+
+
+@pytest.mark.parametrize("word", ["globoidal", "turret", "ferguson"])
+def test_other_words_for_the_kind(word: str, tmp_path: Path) -> None:
+    path = tmp_path / "it.yaml"
+    path.write_text(changed(BARREL, ("kind: indexing", f"kind: {word}")), "utf-8")
+    with pytest.raises(RecipeErrors) as error:
+        camgeo.load(path)
+    assert str(error.value).endswith(f"cam.kind: not one of the choices, given '{word}'; give indexing")
+    with pytest.raises(ValueError, match="there is indexing-barrel and indexing-globoid"):
+        starter(word)
+
+
+def test_an_indexing_cam_is_no_disc() -> None:
+    with pytest.raises(RecipeErrors, match="a cam of kind indexing is no disc cam; export, check and verify take it"):
+        load_text(BARREL, "index.yaml")
+
+
+def test_defaults_and_units() -> None:
+    recipe = recipe_of(BARREL)
+    assert (recipe.roller.inner, recipe.roller.outer, recipe.turret.height) == (37.5, 50.0, 40.0)
+    assert recipe.start == pytest.approx(-math.pi / 6)
+    assert recipe.turret.sizes["offset"] == pytest.approx(60.0 * (1.0 + math.cos(math.pi / 6)) / 2.0)
+    assert recipe_of(changed(BARREL, ("roller: 9", "roller: 9, side: leading"))).turret.sizes["offset"] < 0.0
+    assert recipe_of(changed(BARREL, ("roller: 9", "roller: 9, preload: 0.01"))).clearance == pytest.approx(-0.01)
+    globoid = recipe_of(GLOBOID)
+    assert (globoid.roller.inner, globoid.roller.outer, globoid.layers) == (49.0, 62.0, (49.0, 62.5))
+    inch = recipe_of(
+        "units: inch\n"
+        + changed(
+            GLOBOID,
+            ("distance: 90", "distance: 4"),
+            ("radius: 49", "radius: 2"),
+            ("depth: 13.5", "depth: 0.5"),
+            ("roller: 8", "roller: 8 mm"),
+            ("length: 60", "length: 2"),
+            ("bore: 20", "bore: 0.5"),
+        )
+    )
+    assert inch.roller.inner == pytest.approx(50.8)
+    assert inch.roller.outer == pytest.approx(50.8 + 12.7 - 0.5)
+
+
+def test_of_a_slip_in_the_kind_no_other_key_is_at_fault() -> None:
+    with pytest.raises(RecipeErrors) as told:
+        recipe_of(changed(BARREL, ("kind: indexing", "kind: indexng")))
+    (fault,) = told.value.errors
+    assert "cam.kind: not one of the choices, given 'indexng'; did you mean indexing?" in str(fault)
+
+
+def test_each_turn_advances_by_a_pitch() -> None:
+    """S(theta + 2 pi) = S(theta) + 2 pi/n, with the same derivatives; at a break each side has its own."""
+    law = shared_design(BARREL).law
+    theta = [0.3, 2.0, 5.0]
+    here, later = (law.derivatives([angle + turn for angle in theta], 3) for turn in (0.0, 3.0 * math.tau))
+    assert later[0] - here[0] == pytest.approx([math.pi] * 3)
+    assert later[1:] == pytest.approx(here[1:], abs=1e-9)
+    end = math.radians(150.0)
+    third = [float(law.derivatives(end + math.tau, 3, side)[3][0]) for side in (-1, 1)]
+    b = math.radians(150.0)
+    assert third == pytest.approx([math.pi / 3 * math.tau**2 / b**3, 0.0])
+    seam = [float(law.derivatives(math.tau, 3, side)[3][0]) for side in (-1, 1)]
+    assert seam == pytest.approx([0.0, third[0]])
+    assert law.unrolled.derivatives([1.0 + math.tau], 1)[:, 0] == pytest.approx(
+        law.derivatives(1.0 + math.tau, 1)[:, 0]
+    )
+    mid, rad = law.enclosure([math.tau - 0.1], [math.tau + 0.1], 0)
+    assert float(mid[0, 0] - rad[0, 0]) <= math.pi / 3 <= float(mid[0, 0] + rad[0, 0])
+
+
+def test_a_rest_over_the_end_of_the_turn_is_one() -> None:
+    text = changed(
+        BARREL,
+        (
+            "[{rise: 60, over: 150, law: cycloidal}, {dwell: 210}]",
+            "[{dwell: 90}, {rise: 60, over: 150, law: cycloidal}, {dwell: 120}]",
+        ),
+    )
+    law = design_of(text).law
+    assert law.breaks == pytest.approx([math.radians(90.0), math.radians(240.0)])
+    assert len(law.unrolled.functions) == 2 * (law.turns[1] - law.turns[0] + 1) + 1
