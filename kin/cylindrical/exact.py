@@ -164,13 +164,16 @@ def _sorted(shell: Shell, drum: DrumIntent, gauges: tuple[Gauge, ...], tolerance
     def note(name: str, value: float) -> None:
         off[name] = value if math.isnan(off[name]) else max(off[name], value)
 
+    surfaces = [_smooth(face.surface, mirrored=drum.mirrored) for face in shell.faces if isinstance(face.surface, Patch)]
+    if surfaces:
+        ways = [(gauge, turn) for gauge in gauges for turn in range(drum.follower.turns)]
+        nearest = np.argmin([off_flank(gauge, surfaces, turn) for gauge, turn in ways], axis=0)
+        for surface, (gauge, turn) in zip(surfaces, (ways[k] for k in nearest), strict=True):
+            flanks[gauge.name].append(replace(surface, about=surface.about + TURN * turn))
     for face in shell.faces:
         if isinstance(face.surface, Patch):
-            surface = _smooth(face.surface, mirrored=drum.mirrored)
-            turned = [replace(surface, about=surface.about + TURN * turn) for turn in range(drum.follower.turns)]
-            _, name, turn = min((off_flank(gauge, own), gauge.name, k) for gauge in gauges for k, own in enumerate(turned))
-            flanks[name].append(turned[turn])
-        elif face.surface.level:
+            continue
+        if face.surface.level:
             z = face.heights[0]
             name = BOTTOM if abs(z) <= abs(z - drum.length) else TOP
             note(name, abs(z - (0.0 if name == BOTTOM else drum.length)))

@@ -179,13 +179,30 @@ def _parted(nets: Array, count: Indices) -> tuple[Array, Indices, Array]:
     return restrict(nets[own], shares[:, 0], shares[:, 1]), own, shares
 
 
-def off_flank(gauge: Gauge, surface: Smooth) -> float:
-    """Distance, mm, of half of the corners of a surface from a flank, and no less of the other half."""
-    points = surface.nets[:, [0, -1]][:, :, [0, -1]].reshape(-1, 3)
-    about = None if surface.about is None else np.repeat(surface.about, 4)
+def _alike(surfaces: Sequence[Smooth]) -> list[Smooth]:
+    """Surfaces of the same degrees as one each."""
+    groups: dict[tuple[int, ...], list[Smooth]] = {}
+    for surface in surfaces:
+        groups.setdefault(surface.nets.shape[1:], []).append(surface)
+    return [
+        Smooth(
+            *(np.concatenate([getattr(each, name) for each in own]) for name in ("nets", "lines")),
+            None if any(each.about is None for each in own) else np.concatenate([each.about for each in own]),
+        )
+        for own in groups.values()
+    ]
+
+
+def off_flank(gauge: Gauge, surfaces: Sequence[Smooth], turn: int = 0) -> Array:
+    """Distances (n,), mm, of half of the corners of surfaces from a flank in a turn, and no less of the other half."""
+    corners = [surface.nets[:, [0, -1]][:, :, [0, -1]].reshape(-1, 3) for surface in surfaces]
+    about = None if any(each.about is None for each in surfaces) else np.concatenate([np.repeat(each.about, 4) for each in surfaces]) + TURN * turn
+    points = np.concatenate(corners)
     height, _, distance, *_ = _standing(gauge, points, gauge.peaked(points, about))
     off = np.where(height < gauge.largest, np.abs(distance), np.inf)
-    return float(np.median(np.where(np.isfinite(off), off, np.inf)))
+    off = np.where(np.isfinite(off), off, np.inf)
+    found = np.split(off, np.cumsum([len(each) for each in corners])[:-1])
+    return np.array([np.median(each) for each in found])
 
 
 def _turned(nets: Array) -> Array:
@@ -234,7 +251,7 @@ def look(
 
     A groove of several turns is `crossed`. Raises UnsettledError where the flank is not proved regular, or bounds do not come close to what is reached.
     """
-    return _Look(gauge, tolerance).seen([cells_of(gauge, surface) for surface in surfaces], angles, crossed)
+    return _Look(gauge, tolerance).seen([cells_of(gauge, surface) for surface in _alike(surfaces)], angles, crossed)
 
 
 class _Look:
