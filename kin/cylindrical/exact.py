@@ -47,7 +47,6 @@ if TYPE_CHECKING:
     from collections.abc import Sequence
     from pathlib import Path
 
-    from kin.cylindrical.guide import Unit
     from kin.cylindrical.intent import DrumIntent, Limits
     from kin.cylindrical.roller import Gauge
     from kin.cylindrical.smooth import SeenSmooth
@@ -164,12 +163,12 @@ def _sorted(shell: Shell, drum: DrumIntent, gauges: tuple[Gauge, ...], tolerance
     def note(name: str, value: float) -> None:
         off[name] = value if math.isnan(off[name]) else max(off[name], value)
 
-    surfaces = [_smooth(face.surface, mirrored=drum.mirrored) for face in shell.faces if isinstance(face.surface, Patch)]
+    surfaces = [_smooth(own, mirrored=drum.mirrored) for own in _patches(shell)]
     if surfaces:
         ways = [(gauge, turn) for gauge in gauges for turn in range(drum.follower.turns)]
         nearest = np.argmin([off_flank(gauge, surfaces, turn) for gauge, turn in ways], axis=0)
         for surface, (gauge, turn) in zip(surfaces, (ways[k] for k in nearest), strict=True):
-            flanks[gauge.name].append(replace(surface, about=surface.about + TURN * turn))
+            flanks[gauge.name].append(replace(surface, about=surface.near + TURN * turn))
     for face in shell.faces:
         if isinstance(face.surface, Patch):
             continue
@@ -182,6 +181,11 @@ def _sorted(shell: Shell, drum: DrumIntent, gauges: tuple[Gauge, ...], tolerance
             name = min(distances, key=lambda each: distances[each])
             note(name, distances[name])
     return _Sorted(off, flanks)
+
+
+def _patches(shell: Shell) -> list[Patch]:
+    """B-spline surfaces of a solid."""
+    return [face.surface for face in shell.faces if isinstance(face.surface, Patch)]
 
 
 def _off_walls(shell: Shell, face: Face, drum: DrumIntent, tolerance: float) -> dict[str, float]:

@@ -76,12 +76,19 @@ class Smooth:
 
     nets   (n, p + 1, q + 1, 3) control points, mm
     lines  (n, 2) where t begins and ends, as shares of the surface's own depth
-    about  (n,) polar angles over all turns of the motion, rad, within half a turn of which patches lie; None in one turn
+    about  (n,) polar angles over all turns of the motion, rad, within half a turn of which patches lie; by default
+           in the first turn
     """
 
     nets: Array
     lines: Array
     about: Array | None = None
+
+    @property
+    def near(self) -> Array:
+        """Polar angles (n,), rad, near those of patches."""
+        corners = self.nets[:, 0, 0]
+        return np.arctan2(corners[:, 1], corners[:, 0]) if self.about is None else self.about
 
 
 class SeenSmooth(NamedTuple):
@@ -168,8 +175,7 @@ def cells_of(gauge: Gauge, surface: Smooth) -> _Cells:
     turned, back, shares = _parted(np.swapaxes(nets, 1, 2), across[own])
     own = own[back]
     lines = surface.lines[own, :1] + shares * depth[own, None]
-    about = None if surface.about is None else surface.about[own]
-    return _measured(gauge, np.ascontiguousarray(np.swapaxes(turned, 1, 2)), lines, about)
+    return _measured(gauge, np.ascontiguousarray(np.swapaxes(turned, 1, 2)), lines, surface.near[own])
 
 
 def _parted(nets: Array, count: Indices) -> tuple[Array, Indices, Array]:
@@ -185,10 +191,7 @@ def _alike(surfaces: Sequence[Smooth]) -> list[Smooth]:
     for surface in surfaces:
         groups.setdefault(surface.nets.shape[1:], []).append(surface)
     return [
-        Smooth(
-            *(np.concatenate([getattr(each, name) for each in own]) for name in ("nets", "lines")),
-            None if any(each.about is None for each in own) else np.concatenate([each.about for each in own]),
-        )
+        Smooth(*(np.concatenate([getattr(each, name) for each in own]) for name in ("nets", "lines", "near")))
         for own in groups.values()
     ]
 
@@ -196,7 +199,7 @@ def _alike(surfaces: Sequence[Smooth]) -> list[Smooth]:
 def off_flank(gauge: Gauge, surfaces: Sequence[Smooth], turn: int = 0) -> Array:
     """Distances (n,), mm, of half of the corners of surfaces from a flank in a turn, and no less of the other half."""
     corners = [surface.nets[:, [0, -1]][:, :, [0, -1]].reshape(-1, 3) for surface in surfaces]
-    about = None if any(each.about is None for each in surfaces) else np.concatenate([np.repeat(each.about, 4) for each in surfaces]) + TURN * turn
+    about = np.concatenate([np.repeat(surface.near, 4) for surface in surfaces]) + TURN * turn
     points = np.concatenate(corners)
     height, _, distance, *_ = _standing(gauge, points, gauge.peaked(points, about))
     off = np.where(height < gauge.largest, np.abs(distance), np.inf)
@@ -249,7 +252,8 @@ def look(
 ) -> SeenSmooth:
     """Look at a surface from a roller; bounds are sharp to a share of the tolerance, mm, unless it is far off.
 
-    A groove of several turns is `crossed`. Raises UnsettledError where the flank is not proved regular, or bounds do not come close to what is reached.
+    A groove of several turns is `crossed`. Raises UnsettledError where the flank is not proved regular, or bounds do
+    not come close to what is reached.
     """
     return _Look(gauge, tolerance).seen([cells_of(gauge, surface) for surface in _alike(surfaces)], angles, crossed)
 
@@ -410,9 +414,11 @@ class _Look:
 
     def _halved(self, cells: _Cells, skew: Array) -> _Cells:
         along = skew[0] >= skew[1]
-        nets, lines = zip(_along_halved(cells.nets[along], cells.lines[along]), _across_halved(cells.nets[~along], cells.lines[~along]), strict=True)
+        first = _along_halved(cells.nets[along], cells.lines[along])
+        second = _across_halved(cells.nets[~along], cells.lines[~along])
+        nets, lines = (np.concatenate(pair) for pair in zip(first, second, strict=True))
         about = np.concatenate([np.tile(cells.theta[own, 0, 0], 2) for own in (along, ~along)])
-        return _measured(self.gauge, np.ascontiguousarray(np.concatenate(nets)), np.concatenate(lines), about)
+        return _measured(self.gauge, np.ascontiguousarray(nets), lines, about)
 
 
 def _along_halved(nets: Array, lines: Array) -> tuple[Array, Array]:
@@ -435,7 +441,7 @@ def _quartered(nets: Array, lines: Array) -> tuple[Array, Array]:
 
 
 def _near(gauges: Sequence[Gauge], nets: Array, about: Array) -> Mask:
-    """Cells (n,) that are not surely below or above the way of a roller of all gauges at angles (n,), rad, of its turn."""
+    """Cells (n,) that are not surely below or above the way of a roller at angles (n,), rad, of its turn."""
     points = nets.reshape(-1, 3)
     phi = gauges[0].polar(points, np.repeat(about, len(points) // len(nets))).reshape(len(nets), -1)
     low, high = phi.min(axis=1), phi.max(axis=1)

@@ -151,12 +151,13 @@ class _Drum:
                 for n, (edge, part) in enumerate(zip(edges, parts, strict=True)):
                     forward = below != (side is blank)
                     side.add(edge, (ribs[n].ends[k], ribs[n + 1].ends[k]), part.control[:, k], forward=forward)
-        lines = []
+        lines, half = [], 0.5 * TURN
         for z, forward in ((0.0, True), (design.recipe.height, False)):
-            line = self.circle(blank.radius, z, [blank.cut, blank.cut + 0.5 * TURN])
+            line = self.circle(blank.radius, z, [blank.cut, blank.cut + half])
             for k, edge in enumerate(line.edges):
-                angle = blank.cut + 0.5 * TURN * (k + np.linspace(0.0, 1.0, HALVES + 1))
-                places = np.column_stack([blank.radius * np.cos(angle), blank.radius * np.sin(angle), np.full_like(angle, z)])
+                angle = blank.cut + half * (k + np.linspace(0.0, 1.0, HALVES + 1))
+                x, y = blank.radius * np.cos(angle), blank.radius * np.sin(angle)
+                places = np.column_stack([x, y, np.full_like(angle, z)])
                 blank.add(edge, (line.vertices[k], line.vertices[1 - k]), places, forward=forward)
             lines.append(line)
         for side in (floor, blank):

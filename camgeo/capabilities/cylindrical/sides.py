@@ -1,9 +1,9 @@
 """Faces of a cylinder about the axis between lines on it that cross nowhere: those of metal, or of a groove.
 
 The cylinder is parted along two lines, opposite one another. On either of them what is wanted and what is not follow
-one another from the lower end to the upper one, so that every other stretch between two vertices is an edge. Each edge
-has what is wanted on its left, as seen from outside, and within a half one edge leaves each vertex: so loops follow. One
-that runs counter-clockwise bounds a face, one that runs clockwise is a hole in it.
+one another from the lower end to the upper one, so that every other stretch between two vertices is an edge. An edge
+has what is wanted on its left, as seen from outside, and within a half one edge leaves each vertex: so loops follow. A
+loop that runs counter-clockwise bounds a face, one that runs clockwise is a hole in it.
 """
 
 from __future__ import annotations

@@ -23,6 +23,7 @@ values are off by h2/2 b and the slopes add h2/4 b; Davis, as for `bicubic`).
 from __future__ import annotations
 
 import math
+from itertools import pairwise
 from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
@@ -130,7 +131,7 @@ def trimmed(design: DrumDesign, tolerance: float, parted: Callable[[float, Array
 
 
 def _kept(design: DrumDesign, r: Array, parted: Callable[[float, Array], Sequence[float]]) -> list[_Kept]:
-    """All stretches, with borders at corners, at jumps of the acceleration, beside corners, and where they are to be."""
+    """All stretches, with borders at corners and beside them, at jumps of S'', and where flanks are to be parted."""
     found = []
     for name, flank in design.flanks.items():
         jumps = jumps_of(flank)
@@ -224,7 +225,7 @@ def _splines(
     flank: Flank, r: Array, borders: Sequence[Sequence[Border]], tolerance: float
 ) -> tuple[list[list[Bicubic]], float] | None:
     """Splines between neighbours of borders of stretches, and their bound, mm; None where more rows are needed."""
-    spans = [Span(*pair) for row in borders for pair in zip(row[:-1], row[1:], strict=True)]
+    spans = [Span(*pair) for row in borders for pair in pairwise(row)]
     columns = [_begun(flank, span) for span in spans]
     own = np.repeat(np.arange(len(spans)), [len(nodes) - 1 for nodes in columns])
     low, high = (np.concatenate([nodes[k : len(nodes) - 1 + k] for nodes in columns]) for k in (0, 1))
@@ -240,18 +241,14 @@ def _splines(
         own, low, high, found = own[~right], low[~right], high[~right], found[~right]
         with np.errstate(invalid="ignore"):
             parts = np.where(np.isfinite(found), np.ceil((found / tolerance) ** 0.25), MOST_PARTS)
-        each, step = runs_of(np.clip(parts, 2, MOST_PARTS).astype(np.intp))
+        count = np.clip(parts, 2, MOST_PARTS).astype(np.intp)
+        each, step = runs_of(count)
+        first, width, last = low[each], ((high - low) / count)[each], step + 1 == count[each]
+        own, low, high = own[each], first + step * width, np.where(last, high[each], first + (step + 1) * width)
         total += len(each)
         if total > MOST_NODES:
             message = f"flanks that cross would take too many control points within {tolerance:.3g} mm"
             raise ToleranceError(message, 2.0 * tolerance)
-        wide, count = (high - low)[each], np.bincount(each)[each] if len(each) else each
-        last = step == count - 1
-        own, low, high = (
-            own[each],
-            low[each] + wide * step / np.maximum(count, 1),
-            np.where(last, high[each], low[each] + wide * (step + 1) / np.maximum(count, 1)),
-        )
     owners, ends = (np.concatenate(part) for part in zip(*done, strict=True))
     made = [
         spline(flank, np.concatenate([[span.first.s], np.sort(ends[owners == k])]), r, span)
@@ -275,6 +272,37 @@ def _begun(flank: Flank, span: Span) -> Array:
     return np.asarray(rising[near])
 
 
+class _Of(NamedTuple):
+    """Cells (n,): the numbers of their spans and rows, and between which s, rad, and r, mm, they lie."""
+
+    own: Indices
+    row: Indices
+    s: tuple[Array, Array]
+    r: tuple[Array, Array]
+
+    def take(self, which: Indices) -> _Of:
+        """Some of the cells."""
+        s, r = (tuple(part[which] for part in pair) for pair in (self.s, self.r))
+        return _Of(self.own[which], self.row[which], s, r)  # type: ignore[arg-type]
+
+    def parts(self, count: Indices, deep: int) -> tuple[_Of, Indices]:
+        """Cells parted into numbers (n,) along and so many across, and the first part of each."""
+        cell, step = runs_of(count * deep)
+        along, across = step // deep, step % deep
+
+        def between(ends: tuple[Array, Array], k: Indices, many: Array) -> tuple[Array, Array]:
+            low, wide = ends[0][cell], (ends[1] - ends[0])[cell]
+            return low + wide * k / many, np.where(k + 1 == many, ends[1][cell], low + wide * (k + 1) / many)
+
+        s, r = between(self.s, along, count[cell]), between(self.r, across, np.full(len(cell), deep))
+        return _Of(self.own[cell], self.row[cell], s, r), np.flatnonzero(step == 0)
+
+    @property
+    def size(self) -> tuple[Array, Array]:
+        """Extents (n,), rad and mm."""
+        return self.s[1] - self.s[0], self.r[1] - self.r[0]
+
+
 class _Cells:
     """Cells between nodes of s, rad, and rows r, mm, of spans of a flank."""
 
@@ -285,8 +313,8 @@ class _Cells:
         h = np.diff(r)[:, None]
         (begin, end), (slope, slope1) = ((lean[:, k, :-1], lean[:, k, 1:]) for k in (0, 1))
         rise = (end - begin) / h
-        # cubics (4, 2, rows, spans) over each row of both borders
-        self.cubics = np.stack([begin, slope, (3.0 * rise - 2.0 * slope - slope1) / h, (slope + slope1 - 2.0 * rise) / h**2])
+        square, cube = (3.0 * rise - 2.0 * slope - slope1) / h, (slope + slope1 - 2.0 * rise) / h**2
+        self.cubics = np.stack([begin, slope, square, cube])  # (4, 2, rows, spans) over each row of both borders
         self.breaks = np.sort((flank.law.breaks + flank.period * np.arange(-1, 4)[:, None]).ravel())
 
     def off(self, own: Indices, low: Array, high: Array) -> tuple[Array, Array]:
@@ -294,46 +322,34 @@ class _Cells:
         rows, n = len(self.r) - 1, len(own)
         row = np.repeat(np.arange(rows), n)
         own, low, high = (np.tile(part, rows) for part in (own, low, high))
-        ways = self._way(own, (low, high), row, (self.r[row], self.r[row + 1]))
-        broken = np.searchsorted(self.breaks, ways.low + SAME) < np.searchsorted(self.breaks, ways.high - SAME)
-        h1, h2 = high - low, np.diff(self.r)[row]
-        off, across = np.empty((2, len(own)))
-        if (smooth := np.flatnonzero(~broken)).size:
-            place = own[smooth], (low[smooth], high[smooth]), row[smooth]
-            off[smooth], across[smooth] = self._smooth(*place, (h1[smooth], h2[smooth]))
-        if (rough := np.flatnonzero(broken)).size:
-            place = own[rough], (low[rough], high[rough]), row[rough]
-            off[rough], across[rough] = self._rough(*place, (h1[rough], h2[rough]))
-        worst: tuple[Array, Array] = tuple(part.reshape(rows, n).max(axis=0) for part in (off, across))  # type: ignore[assignment]
-        return worst
+        cells = _Of(own, row, (low, high), (self.r[row], self.r[row + 1]))
+        way = self._way(cells)
+        broken = np.searchsorted(self.breaks, way.low + SAME) < np.searchsorted(self.breaks, way.high - SAME)
+        found = np.empty((2, len(own)))
+        for which, bound in ((np.flatnonzero(~broken), self._smooth), (np.flatnonzero(broken), self._rough)):
+            if which.size:
+                found[:, which] = bound(cells.take(which))
+        off, across = found.reshape(2, rows, n).max(axis=1)
+        return off, across
 
-    def _smooth(self, own: Indices, s: tuple[Array, Array], row: Indices, size: tuple[Array, Array]) -> tuple[Array, Array]:
+    def _smooth(self, cells: _Of) -> tuple[Array, Array]:
         """Bounds of cells without a break, from fourth derivatives over parts of them."""
-        (low, high), (h1, h2) = s, size
-        deep = max(1, math.ceil(DEEP / (len(self.r) - 1)))
+        h1, h2 = cells.size
         count = np.maximum(np.ceil(h1 / LOOK), 1.0).astype(np.intp)
-        cell, step = runs_of(count * deep)
-        along, across = step // deep, step % deep
-        inner = self.r[row][cell] + h2[cell] * across / deep
-        outer = np.where(across == deep - 1, self.r[row + 1][cell], inner + h2[cell] / deep)
-        first = low[cell] + h1[cell] * along / count[cell]
-        last = np.where(along == count[cell] - 1, high[cell], low[cell] + h1[cell] * (along + 1) / count[cell])
-        way = self._way(own[cell], (first, last), row[cell], (inner, outer))
-        bounds = derived(self.flank, way, (inner, outer)).bounds()
-        heads = np.flatnonzero(step == 0)
+        parts, heads = cells.parts(count, max(1, math.ceil(DEEP / (len(self.r) - 1))))
+        bounds = derived(self.flank, self._way(parts), parts.r).bounds()
         folded = type(bounds)(*(np.maximum.reduceat(part, heads) for part in bounds))
         with np.errstate(invalid="ignore"):
             return folded.off(h1, h2), folded.off(0.0 * h1, h2)
 
-    def _rough(self, own: Indices, s: tuple[Array, Array], row: Indices, size: tuple[Array, Array]) -> tuple[Array, Array]:
+    def _rough(self, cells: _Of) -> tuple[Array, Array]:
         """Bounds of cells with a break, at which second derivatives jump."""
-        h1, h2 = size
-        r = self.r[row], self.r[row + 1]
-        way = self._way(own, s, row, r)
-        found = derived(self.flank, way, r)
-        turn = 0.5 * (way.high - way.low)
+        h1, h2 = cells.size
+        way = self._way(cells)
+        found, turn = derived(self.flank, way, cells.r), 0.5 * (way.high - way.low)
 
         def ball(parts: Sequence[Ball]) -> Array:
+            """Radius of a ball about a derivative, whose frame turns over the cell."""
             around: Array = np.sqrt(sum(part.rad**2 for part in parts)) + turn * size_of(parts)
             return around
 
@@ -342,19 +358,19 @@ class _Cells:
             along = h1**2 / SECOND * ball(found.along[2]) * found.rate**2
             return along + across + MIXED * h1 * h2 * ball(found.mixed[1]), across
 
-    def _way(self, own: Indices, s: tuple[Array, Array], row: Indices, r: tuple[Array, Array]) -> Way:
-        """Lines s = const over cells of spans, between radii within rows."""
-        low, high = s
+    def _way(self, cells: _Of) -> Way:
+        """Lines s = const over cells."""
+        own, row, s, r = cells
         x = BallJet.variable(r[0] - self.r[row], r[1] - self.r[row], FOURTH)
         first, last = (horner(self.cubics[:, k, row, own], x) for k in (0, 1))
         begin, end = self.ends[own].T
         wide = end - begin
         shares = [(each - begin) / wide for each in s]
-        ends = [first.rows[0] * (1.0 - share) + last.rows[0] * share + each for share, each in zip(shares, s, strict=True)]
-        least, most = ends[0].bounds()[0], ends[1].bounds()[1]
-        share = Ball.between(*shares)
+        low, high = (
+            (first.rows[0] * (1.0 - share) + last.rows[0] * share + each).bounds()
+            for share, each in zip(shares, s, strict=True)
+        )
+        within, share = Ball.between(low[0], high[1]), Ball.between(shares[0], shares[1])
         theta = first * (share * -1.0 + 1.0) + last * share
-        value = Ball.between(least, most)
-        theta.mid[0], theta.rad[0] = value.mid, value.rad
-        rate = (last - first) * (1.0 / wide) + 1.0
-        return Way(least, most, theta, rate, straight=False)
+        theta.mid[0], theta.rad[0] = within.mid, within.rad
+        return Way(low[0], high[1], theta, (last - first) * (1.0 / wide) + 1.0, straight=False)

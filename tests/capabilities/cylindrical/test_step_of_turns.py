@@ -44,10 +44,11 @@ if TYPE_CHECKING:
     from collections.abc import Callable
     from pathlib import Path
 
+    from capabilities.cylindrical.wound_drums import Row
+
     from camgeo.capabilities.cylindrical.bicubic import Bicubic
     from camgeo.capabilities.cylindrical.design import DrumDesign
     from camgeo.capabilities.cylindrical.trimmed import Trimmed
-    from capabilities.cylindrical.wound_drums import Row
 
 TURN = 2.0 * math.pi
 FINE = 0.003  # mm
@@ -124,10 +125,11 @@ def test_the_parts_of_a_stretch_follow_one_another_down_to_the_last_digits(name:
 
 @pytest.mark.costly("splines of a drum of two turns, and places on the worst of them against pins at all angles")
 def test_a_jump_of_the_jerk_beneath_an_edge_counts(monkeypatch: pytest.MonkeyPatch) -> None:
-    """The break lies between the ends of a line; the bound there is far above what is off, and asks for more columns."""
+    """The break lies between the ends of a line; as if it were not there fewer columns would be proved."""
     design, r = designed("bent"), np.linspace(25.0, 30.0, 9)
     flank, at = design.flanks["lower"], math.radians(190.3)
-    lines = [line for ends in kept_of(design.crossings, "lower", flank.period) for line in lines_of(ends, r, flank.period)]
+    kept = kept_of(design.crossings, "lower", flank.period)
+    lines = [line for ends in kept for line in lines_of(ends, r, flank.period)]
     (line,) = [each for each in lines if each.min() + 1e-3 < at < each.max() - 1e-3]
 
     def columns(found: Trimmed) -> int:
