@@ -353,11 +353,11 @@ class _Look:
                 if not near.any():
                     break
                 nets, lines, about = nets[near], lines[near], about[near]
-                inside, bound = np.full((len(nets), 2, 2), np.inf), np.full(len(nets), np.inf)
+                inside, bound = np.zeros((len(nets), 2, 2)), np.full(len(nets), np.inf)
                 for gauge in gauges:
                     seen = _measured(gauge, nets, lines, about)
                     bounds = _bounds(gauge, seen, 0.0)
-                    inside = np.minimum(inside, np.where(seen.height > 0.0, np.maximum(-seen.distance, 0.0), 0.0))
+                    inside = np.fmax(inside, -seen.distance)  # at any angle a place is as deep at least
                     top = seen.height.max(axis=(1, 2)) + bounds.height + bounds.gap
                     under = -seen.distance.min(axis=(1, 2)) + bounds.distance + bounds.under
                     bound = np.fmin(bound, np.fmin(under, np.maximum(top, 0.0)))
@@ -365,6 +365,7 @@ class _Look:
                 if inside.ravel()[k] > max(self.most["proud"], 0.0):
                     self.most["proud"], self.at["proud"] = float(inside.ravel()[k]), float(seen.theta.ravel()[k])
                 open_ = ~(bound <= max(self.most["proud"], 0.0) + self.near)
+                far = far or self.most["proud"] > FAR * self.tolerance
                 last = far or parting == ROUNDS or np.count_nonzero(open_) > MOST
                 if last and open_.any() and not far:
                     raise UnsettledError("bounds of what stands in the way of another turn are not close: give an STL")
