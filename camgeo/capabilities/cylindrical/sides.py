@@ -54,10 +54,9 @@ class Sides:
         middle = self.cut + 0.5 * TURN * (half + 0.5)
         angle += TURN * np.round((middle - 0.5 * (angle[0] + angle[-1])) / TURN)
         places = np.column_stack([angle, points[:, 2]])
-        numbers = [self._number(vertex, place) for vertex, place in zip(ends, (places[0], places[-1]), strict=True)]
-        if not forward:
-            edge, numbers, places = edge.Reversed(), numbers[::-1], places[::-1]
-        self.arcs[half].append(_Arc(edge, *numbers, places))
+        start, end = self._number(ends[0], places[0]), self._number(ends[1], places[-1])
+        arc = _Arc(edge, start, end, places) if forward else _Arc(edge.Reversed(), end, start, places[::-1])
+        self.arcs[half].append(arc)
 
     def _number(self, vertex: Shape, place: Array) -> int:
         for number, other in enumerate(self.vertices):
