@@ -1,7 +1,8 @@
 """The verdict on a solid of exact surfaces: B-spline flanks by contact, planes and cylinders as they are.
 
 Each face is held against that of the intended drum to which it is nearest. Together with a closed shell, whose faces
-look outward, and the volume that says that nothing of the drum is missing (`kin.cylindrical.judge`).
+look outward, and the volume that says that nothing of the drum is missing (`kin.cylindrical.judge`). A surface of a
+groove of several turns belongs to the turn and flank that it is nearest to.
 """
 
 from __future__ import annotations

@@ -28,6 +28,10 @@ place of the roller between both, T along its path. All of the above is true of 
 G as well, and is proved for these.
 
 At every shaft angle some place of a line t = const holds the roller, if the line goes round: as high as H at least.
+
+A groove of several turns crosses itself. Its patches lie in one turn each, and lines go as far as a wall stands. All of
+it has to leave the rollers of other turns room: a place lies within the way of one if F of both its flanks is above 0,
+and no deeper than the bounds of either flank say.
 """
 
 from __future__ import annotations

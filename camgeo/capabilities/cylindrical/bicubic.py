@@ -21,6 +21,9 @@ and with the derivatives a_1 by theta and a_2 by rho of the contact's angle, whi
 those of q, and rho_theta = -q q_1/(rho + q q_2) and rho_r = r/(rho + q q_2) on a cylinder, from which rho follows as a
 series. All needs S and five derivatives, as balls over cells. Breaks of any derivative are nodes; where S'' jumps,
 p_theta does, and one spline ends and another begins.
+
+A spline may end at lines that lean. Then its parameter is s, theta(s, r) is linear in s, and the derivatives are those
+of p(theta(s, r), r): along r they are by d/dr + theta_r d/dtheta, and need a sixth of S. The frame turns by theta_r.
 """
 
 from __future__ import annotations
