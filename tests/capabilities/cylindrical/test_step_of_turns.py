@@ -80,6 +80,7 @@ def pins_of(name: str) -> Pins:
 
 
 @pytest.mark.costly("places on splines are held against pins at all angles of several turns")
+@pytest.mark.thin(3)
 @pytest.mark.parametrize("name", TRACKS)
 @pytest.mark.parametrize("tolerance", [0.05, 0.002])
 def test_splines_are_as_near_all_pins_as_is_proved(name: str, tolerance: float) -> None:
@@ -176,6 +177,7 @@ def test_lines_that_do_not_follow_one_another_bound_no_face() -> None:
 
 @kernel
 @pytest.mark.costly("a solid, read by the kernel and by kin, and written again by the kernel")
+@pytest.mark.thin(3)
 @pytest.mark.parametrize("name", TRACKS)
 def test_another_kernel_takes_the_solid_and_kin_both_files(tmp_path: Path, name: str) -> None:
     tolerance = {"screw": 0.02, "spiral": 0.005, "bent": 0.05}[name]
