@@ -102,7 +102,7 @@ def judge_shell(shell: Shell, drum: DrumIntent, limits: Limits, kind: str = "") 
         both = [each for each, flank in zip(seen, verdicts, strict=True) if each is not None and flank.motion]
         if len(both) > 1 and (held := both[0].carried & both[1].carried).any():
             pinched = (both[0].holds + both[1].holds)[held]
-            theta = np.flatnonzero(held) * (TURN / ANGLES)
+            theta = np.flatnonzero(held) * np.float64(TURN / ANGLES)
             play, check = play_check(job, pinched, exact_play(drum, theta) - pinched, theta)
             checks.append(check)
         checks += led_checks(crossings)

@@ -773,7 +773,7 @@ def _holds(gauge: Gauge, cells: Sequence[_Cells], angles: int) -> Array:
     for each in cells:
         corners = each.nets[:, [0, -1]][:, :, [0, -1]]
         reach = corners[..., 0] * np.cos(each.theta) + corners[..., 1] * np.sin(each.theta)
-        inside = ((reach >= gauge.inner) & (reach <= gauge.outer)).all(axis=1)
+        inside: Mask = np.logical_and.reduce((reach >= gauge.inner) & (reach <= gauge.outer), axis=1)
         low, high = each.theta.min(axis=1), each.theta.max(axis=1)
         for k in (0, 1):
             begin = np.ceil((low[:, k] - LOOSE) / width).astype(np.intp)

@@ -128,7 +128,7 @@ class _Bounds(NamedTuple):
     across: Array
     mixed: Array
 
-    def off(self, h1: Array, h2: float) -> Array:
+    def off(self, h1: Array, h2: Array | float) -> Array:
         """Bound of the distance, mm (n,), between nodes h1 rad (n,) and h2 mm apart."""
         off: Array = (h1**4 * self.along + h2**4 * (self.across + 0.25 * h1 * self.mixed)) / HERMITE
         return off
@@ -474,16 +474,17 @@ def local(flank: Flank, line: tuple[Array, Array], r: Array, side: Side = 1) -> 
     y, z = flank.guide.path(flank.law.on(Jet.variable(theta, 3 if slope.any() else 2), side))
     y1, z1 = y.derivative(), z.derivative()
     axis = _Axis(*(_first(part, slope) for part in (y, y1, y1.derivative(), z, z1, z1.derivative())))
-    start = flank.reached(Pose(*(part.c[0] for part in axis), np.zeros_like(theta)), r)
+    rows = [part.c[0] for part in axis]
+    start = flank.reached(Pose(rows[0], rows[1], rows[2], rows[3], rows[4], rows[5], np.zeros_like(theta)), r)
     rates = _rates(flank, _axis_to(axis, 0), Jet(start[None]))
     rho = Jet(np.stack([start, r / rates.out.c[0] + rates.rho.c[0] * slope]))
     turn = Jet(np.stack([theta, slope]))
     c, s = cos(turn), sin(turn)
-    places = []
+    found = []
     for x, q, h in (_place(flank, axis, rho), _rate(flank, axis, rho)):
-        places += [x * c - q * s, x * s + q * c, h]
-    rows = np.array([part.c for part in places]).reshape(2, 3, 2, -1).transpose(0, 2, 3, 1)
-    return rows[0, 0], rows[0, 1], rows[1, 0], rows[1, 1]
+        found += [x * c - q * s, x * s + q * c, h]
+    by = np.array([part.c for part in found]).reshape(2, 3, 2, -1).transpose(0, 2, 3, 1)
+    return by[0, 0], by[0, 1], by[1, 0], by[1, 1]
 
 
 def _first(part: Jet, slope: Array) -> Jet:

@@ -294,7 +294,8 @@ class _Of(NamedTuple):
             low, wide = ends[0][cell], (ends[1] - ends[0])[cell]
             return low + wide * k / many, np.where(k + 1 == many, ends[1][cell], low + wide * (k + 1) / many)
 
-        s, r = between(self.s, along, count[cell]), between(self.r, across, np.full(len(cell), deep))
+        many = count[cell].astype(np.float64), np.full(len(cell), float(deep))
+        s, r = between(self.s, along, many[0]), between(self.r, across, many[1])
         return _Of(self.own[cell], self.row[cell], s, r), np.flatnonzero(step == 0)
 
     @property
@@ -321,7 +322,7 @@ class _Cells:
         """Bounds (n,), mm, over columns of cells from `low` to `high`, and what of each stays as they become narrow."""
         rows, n = len(self.r) - 1, len(own)
         row = np.repeat(np.arange(rows), n)
-        own, low, high = (np.tile(part, rows) for part in (own, low, high))
+        own, low, high = np.tile(own, rows), np.tile(low, rows), np.tile(high, rows)
         cells = _Of(own, row, (low, high), (self.r[row], self.r[row + 1]))
         way = self._way(cells)
         broken = np.searchsorted(self.breaks, way.low + SAME) < np.searchsorted(self.breaks, way.high - SAME)
