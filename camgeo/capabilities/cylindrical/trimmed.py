@@ -46,6 +46,7 @@ from camgeo.capabilities.cylindrical.bicubic import (
 )
 from camgeo.capabilities.cylindrical.grid import SAME
 from camgeo.capabilities.cylindrical.patches import kept_of, lines_of
+from camgeo.common.rounding import upward
 from camgeo.fit.nodes import ToleranceError, check_precision, rounding
 from kin.numeric.arrays import runs_of
 from kin.numeric.interval import Ball
@@ -65,6 +66,7 @@ if TYPE_CHECKING:
 WEDGE = 0.05  # rad, or half of what a line leans, at which an upright border follows
 LOOK, DEEP = 0.035, 2  # rad, and parts of the depth: cells that bounds are taken over
 MORE_ROWS = 1.5  # times as many rows in each further round
+COARSER = 2.0  # times a tolerance that is not held, the next one that is tried
 MOST_PARTS = 4  # into which a cell is parted at once
 SECOND = 16.0  # of the error of cubic interpolation, where the second derivative jumps
 MIXED = 3.0 / 16.0  # of that where the mixed one does
@@ -104,11 +106,27 @@ def trimmed(design: DrumDesign, tolerance: float, parted: Callable[[float, Array
     which all flanks are to be parted on that cylinder. Raises ToleranceError where the tolerance cannot be held or
     proved.
     """
-    recipe, flanks = design.recipe, design.flanks
-    ends = recipe.floor, recipe.radius
-    size = max(ends[1] + abs(flank.level) + flank.guide.reach for flank in flanks.values())
+    recipe = design.recipe
+    size = max(recipe.radius + abs(flank.level) + flank.guide.reach for flank in design.flanks.values())
     check_precision(size, tolerance)
-    lost = rounding(size)
+    least, found = tolerance, _made(design, (tolerance, rounding(size)), parted)
+    if found is not None:
+        return found
+    while found is None:
+        least *= COARSER
+        if least > size:
+            raise ToleranceError("flanks that cross have no bound near enough: no surface is proved", math.inf)
+        found = _made(design, (least, rounding(size)), parted)
+    problem = f"flanks that cross within {tolerance:.3g} mm would take too many control points"
+    raise ToleranceError(f"{problem}; give at least {upward(least, 3)} mm", least)
+
+
+def _made(
+    design: DrumDesign, within: tuple[float, float], parted: Callable[[float, Array], Sequence[float]]
+) -> Trimmed | None:
+    """Splines within a tolerance, mm, of which so much is rounding; None where it takes too many control points."""
+    tolerance, lost = within
+    flanks, ends = design.flanks, (design.recipe.floor, design.recipe.radius)
     count = max(rows_for(flank, ends, tolerance, lost) for flank in flanks.values())
     while count <= MOST_ROWS:
         r = np.linspace(*ends, count + 1)
@@ -120,11 +138,11 @@ def trimmed(design: DrumDesign, tolerance: float, parted: Callable[[float, Array
             if found is None:
                 break
             off = max(off, found[1])
-            made += [Stretch(*each[:3], tuple(parts)) for each, parts in zip(own, found[0], strict=True)]
+            made += [Stretch(*each[:3], tuple(parts)) for each, parts in zip(own, found[0], strict=False)]
         else:
-            return Trimmed(tuple(made), off + lost)
+            return Trimmed(tuple(made), off + lost) if math.isfinite(off) else None
         count = math.ceil(MORE_ROWS * count)
-    raise ToleranceError(f"flanks that cross are not proved within {tolerance:.3g} mm", 2.0 * tolerance)
+    return None
 
 
 # --- borders ----------------------------------------------------------------------------------------------------------
@@ -224,7 +242,10 @@ def _angles_at(flank: Flank, phi: Array, r: float) -> Array:
 def _splines(
     flank: Flank, r: Array, borders: Sequence[Sequence[Border]], tolerance: float
 ) -> tuple[list[list[Bicubic]], float] | None:
-    """Splines between neighbours of borders of stretches, and their bound, mm; None where more rows are needed."""
+    """Splines between neighbours of borders of stretches, and their bound, mm; None where more rows are needed.
+
+    The bound is infinite where they would take too many columns.
+    """
     spans = [Span(*pair) for row in borders for pair in pairwise(row)]
     columns = [_begun(flank, span) for span in spans]
     own = np.repeat(np.arange(len(spans)), [len(nodes) - 1 for nodes in columns])
@@ -247,8 +268,7 @@ def _splines(
         own, low, high = own[each], first + step * width, np.where(last, high[each], first + (step + 1) * width)
         total += len(each)
         if total > MOST_NODES:
-            message = f"flanks that cross would take too many control points within {tolerance:.3g} mm"
-            raise ToleranceError(message, 2.0 * tolerance)
+            return [], math.inf
     owners, ends = (np.concatenate(part) for part in zip(*done, strict=True))
     made = [
         spline(flank, np.concatenate([[span.first.s], np.sort(ends[owners == k])]), r, span)

@@ -114,6 +114,7 @@ def test_both_flanks_of_a_corner_end_in_one_curve_that_is_near_both(name: str) -
         assert away[:, 1].max() < found.off + 1e-9
 
 
+@pytest.mark.costly("splines of drums of several turns")
 @pytest.mark.parametrize("name", TRACKS)
 def test_the_parts_of_a_stretch_follow_one_another_down_to_the_last_digits(name: str) -> None:
     for stretch in splines(name, 0.05).stretches:
@@ -144,11 +145,22 @@ def test_a_jump_of_the_jerk_beneath_an_edge_counts(monkeypatch: pytest.MonkeyPat
     assert columns(trimmed(design, 0.002, lambda *_: [1.0, 1.0 + 0.5 * TURN])) < with_jump
 
 
-def test_a_tolerance_that_is_too_small_is_refused() -> None:
-    with pytest.raises(ToleranceError, match="control points"):
-        trimmed(designed("spiral"), 1e-8, lambda *_: [1.0, 4.0])
+@pytest.mark.costly("splines of a drum of two turns at several tolerances")
+def test_a_tolerance_that_is_too_small_names_one_that_serves(monkeypatch: pytest.MonkeyPatch) -> None:
+    design = designed("bent")
+    with pytest.raises(ToleranceError, match="control points; give at least"):
+        trimmed(design, 1e-8, lambda *_: [1.0, 4.0])
     with pytest.raises(ToleranceError, match="double precision"):
-        trimmed(designed("spiral"), 1e-15, lambda *_: [1.0, 4.0])
+        trimmed(design, 1e-15, lambda *_: [1.0, 4.0])
+    monkeypatch.setattr(made, "MOST_NODES", 50)
+    with pytest.raises(ToleranceError, match=r"flanks that cross within 0\.005 mm .* control points; give") as caught:
+        trimmed(design, 0.005, lambda *_: [1.0, 4.0])
+    least = caught.value.reached
+    assert 0.005 < least < 1.0
+    assert trimmed(design, least, lambda *_: [1.0, 4.0]).off <= least
+    monkeypatch.setattr(made, "COARSER", 1e6)
+    with pytest.raises(ToleranceError, match="no surface is proved"):
+        trimmed(design, 0.005, lambda *_: [1.0, 4.0])
 
 
 # --- faces of cylinders -----------------------------------------------------------------------------------------------
