@@ -8,6 +8,7 @@ from __future__ import annotations
 import math
 import re
 from functools import cache
+from random import Random
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -28,7 +29,7 @@ from capabilities.cylindrical.test_step import (
     without_a_face,
     written,
 )
-from capabilities.cylindrical.wound_drums import SCREW, SCREW_ROWS, SPIRAL, SPIRAL_ROWS, Pins, text_of
+from capabilities.cylindrical.wound_drums import SCREW, SCREW_ROWS, SPIRAL, SPIRAL_ROWS, Pins, random_track, text_of
 from support.kernel import kernel
 
 import camgeo
@@ -39,6 +40,7 @@ from camgeo.capabilities.cylindrical.sides import Sides
 from camgeo.capabilities.cylindrical.trimmed import trimmed
 from camgeo.files.errors import RegionError
 from camgeo.fit.nodes import ToleranceError
+from camgeo.schema.errors import RecipeErrors
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -223,6 +225,31 @@ def test_a_recipe_of_several_turns_with_a_step_file(tmp_path: Path) -> None:
     assert file["geometry_error"] <= 0.05
     assert max(surface["measured_error"] for surface in file["surfaces"]) <= file["geometry_error"]
     assert camgeo.verify(tmp_path / "drum.yaml", path).ok
+
+
+@kernel
+@pytest.mark.slow  # solids by the kernel, and whole verdicts
+@pytest.mark.parametrize("seed", range(12))
+def test_random_tracks(tmp_path: Path, seed: int) -> None:
+    """Screws and spirals; a shoe that does not serve is given the length that its error names."""
+    chance, tolerance = Random(700 + seed), (0.05, 0.01, 0.002)[seed % 3]
+    for _ in range(60):
+        _, text = random_track(chance)
+        try:
+            design_of(text)
+            break
+        except RecipeErrors as error:
+            named = re.search(r"(?:give a shoe of|give at most) ([\d.]+) mm", str(error))
+            if named is not None:
+                text = re.sub(r"length: [\d.]+}", f"length: {named[1]}}}", text, count=1)
+                break
+    path, design, off = written(tmp_path, text, tolerance)
+    sound, measured = solids_of(path)
+    assert sound
+    assert measured == pytest.approx(volume(design), abs=0.1 * tolerance * 10_000)
+    verdict = judged(path, design, tolerance)
+    assert verdict.ok, [check for check in verdict.checks if not check.ok]
+    assert all(flank.measured_error is not None and flank.measured_error <= off for flank in verdict.flanks)
 
 
 # --- planted faults ---------------------------------------------------------------------------------------------------
