@@ -363,8 +363,8 @@ class _Places(NamedTuple):
         return _Places(*(Ball(ball.mid[which], ball.rad[which]) for ball in self))
 
 
-def _bounds(gauge: Gauge, cells: _Cells, shift: Array) -> _Bounds:
-    """Bounds over cells, true of rollers that give way by no more than `shift` (n,), mm."""
+def _bounds(gauge: Gauge, cells: _Cells, shift: Array | float) -> _Bounds:
+    """Bounds over cells, true of rollers that give way by no more than `shift`, mm, one for all cells or (n,)."""
     side, guide, base, growth = float(gauge.side), gauge.led, float(gauge.size(0.0)), gauge.spread
     middle = cells.theta.mean(axis=(1, 2))
     c, s = np.cos(middle)[:, None, None], np.sin(middle)[:, None, None]
@@ -399,7 +399,9 @@ def _bounds(gauge: Gauge, cells: _Cells, shift: Array) -> _Bounds:
     (h1, k1, q1), (h2, k2, q2) = bent
     steep = np.abs(cells.rate).max(axis=(1, 2)) + apart[0] + apart[1]
     places = _Places(*(part.rows[0] for part in (q, across, along, v, size)))
-    beside, under, path = _gaps(gauge, cells, places, (low + middle, high + middle), (steep, shift))
+    beside, under, path = _gaps(
+        gauge, cells, places, (low + middle, high + middle), (steep, np.broadcast_to(shift, steep.shape))
+    )
     upright = 1.0 / math.hypot(1.0, growth)
     return _Bounds(
         0.125 * (h1 + h2),
