@@ -519,6 +519,7 @@ def test_the_pressure_of_a_line_that_a_cut_shortens() -> None:
     assert middle.value == pytest.approx(max(pressures), rel=2e-3)
 
 
+@pytest.mark.costly("two drums and all of their figures")
 def test_the_pressure_where_nothing_is_cut_though_it_might_be() -> None:
     driven = ("  pitch_height", "  drive: {load: 200, material: steel}\n  pitch_height")
     told = [
