@@ -17,7 +17,6 @@ from kin.contour.holes import farthest
 from kin.cylindrical.crossings import Crossings
 from kin.cylindrical.edges import Peak
 from kin.cylindrical.faces import BLANK, BORE, BOTTOM, FINE, FLOOR, TOP
-from kin.cylindrical.figures import exact_play
 from kin.cylindrical.gauge import gauges_of
 from kin.cylindrical.judge import (
     CONTOUR,
@@ -32,6 +31,7 @@ from kin.cylindrical.judge import (
     stretches,
     volume_check,
 )
+from kin.cylindrical.play import exact_play
 from kin.cylindrical.smooth import BINS, Crossed, Smooth, look, off_flank
 from kin.cylindrical.verdict import DrumVerdict, FlankVerdict, MotionError
 from kin.numeric.angles import TURN

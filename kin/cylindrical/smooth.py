@@ -65,6 +65,7 @@ FAR = 3.0  # times the tolerance: what is so far off need not be known more clos
 BINS = 2048  # parts of a turn, for each of which the roller is held
 WINDOW, ROOM, MOST_WINDOW = 0.004, 1.5, 0.1  # rad, about the worst angle, within which F falls; one with room; greatest
 NOTHING = 0.01  # of what bounds have to be close to: cells whose own bounds are below it need not be smaller
+AMPLE, SHARPER = 1.25, 0.5  # times the window that is needed; share of the one at hand, below which it is narrowed
 NARROWER = 3  # times that the window is a quarter, where F is not known to fall all over it
 LOOKS, DEPTHS, PARTINGS = 720, 8, 4  # cells of the proof that a flank is regular, and how often they are halved
 JUMP = 1e-9  # of the greatest jump of S'', mm per rad^2, below which one is rounding
@@ -310,7 +311,9 @@ class _Look:
     def _settle(self, cells: _Cells, *, far: bool) -> None:
         """Take in cells and their bounds; those that are far above what is reached are halved."""
         for parting in range(ROUNDS + 1):
-            bounds = _bounds(self.gauge, cells, self.shift)
+            # at the places of a cell a roller gives way by little more than at its corners
+            shift = np.minimum(SHIFT * (np.abs(cells.gives).max(axis=(1, 2)) + self.near), self.shift)
+            bounds = _bounds(self.gauge, cells, shift)
             reached = self._reached(cells)
             top, deep = cells.height.max(axis=(1, 2)) + bounds.height + bounds.gap, cells.distance
             out = np.where(reached, bounds.given(top)[1], -np.inf)
@@ -333,14 +336,15 @@ class _Look:
                 | (bare > max(self.most["bare"], 0.0) + self.near)
                 | (low < self.lowest - self.near)
             )
-            hopeless = bool((open_ & _hopeless(cells, bounds, (self.near, self.shift))).any())
+            hopeless = bool((open_ & _hopeless(cells, bounds, (self.near, shift))).any())
             last = far or parting == ROUNDS or np.count_nonzero(open_) > MOST or hopeless
             done = np.ones_like(open_) if last else ~open_
             for name, values in (("out", out), ("proud", proud), ("bare", bare)):
                 self.bound[name] = max(self.bound[name], float(values[done].max(initial=-math.inf)))
             self._hold(cells, bounds, done)
             if last and open_.any() and not far:
-                raise UnsettledError("bounds of the flank's surface do not come close to what is reached: give an STL")
+                steep = "this steep flank is not proved by its surface at this tolerance"
+                raise UnsettledError(f"{steep}: give a smaller one, or an STL")
             if done.all():
                 return
             cells = self._halved(cells.take(open_), bounds.skew[:, open_])
@@ -459,10 +463,10 @@ def _near(gauges: Sequence[Gauge], nets: Array, about: Array) -> Mask:
     return near
 
 
-def _hopeless(cells: _Cells, bounds: _Bounds, sizes: tuple[float, float]) -> Mask:
+def _hopeless(cells: _Cells, bounds: _Bounds, sizes: tuple[float, Array]) -> Mask:
     """Cells (n,) so small that not they, but how far rollers are shifted, leaves F unknown.
 
-    `sizes` are what bounds have to be close to, and how far rollers are shifted, mm.
+    `sizes` are what bounds have to be close to, and how far rollers are shifted (n,), mm.
     """
     near, shift = sizes
     span = (cells.theta.max(axis=(1, 2)) - cells.theta.min(axis=(1, 2))) * bounds.along[1]
@@ -487,8 +491,8 @@ class _Places(NamedTuple):
         return _Places(*(Ball(ball.mid[which], ball.rad[which]) for ball in self))
 
 
-def _bounds(gauge: Gauge, cells: _Cells, shift: float) -> _Bounds:
-    """Bounds over cells, true of rollers that give way by no more than `shift`, mm."""
+def _bounds(gauge: Gauge, cells: _Cells, shift: Array | float) -> _Bounds:
+    """Bounds over cells, true of rollers that give way by no more than `shift`, mm, one for all cells or (n,)."""
     side, guide, base, growth = float(gauge.side), gauge.led, float(gauge.size(0.0)), gauge.spread
     middle = cells.theta.mean(axis=(1, 2))
     c, s = np.cos(middle)[:, None, None], np.sin(middle)[:, None, None]
@@ -523,7 +527,9 @@ def _bounds(gauge: Gauge, cells: _Cells, shift: float) -> _Bounds:
     (h1, k1, q1), (h2, k2, q2) = bent
     steep = np.abs(cells.rate).max(axis=(1, 2)) + apart[0] + apart[1]
     places = _Places(*(part.rows[0] for part in (q, across, along, v, size)))
-    beside, under, path = _gaps(gauge, cells, places, (low + middle, high + middle), (steep, shift))
+    beside, under, path = _gaps(
+        gauge, cells, places, (low + middle, high + middle), (steep, np.broadcast_to(shift, steep.shape))
+    )
     upright = 1.0 / math.hypot(1.0, growth)
     return _Bounds(
         0.125 * (h1 + h2),
@@ -582,12 +588,12 @@ def _slopes(gauge: Gauge, angle: BallJet, middle: Array) -> BallJet:
 
 
 def _gaps(
-    gauge: Gauge, cells: _Cells, places: _Places, angles: tuple[Array, Array], steepness: tuple[Array, float]
+    gauge: Gauge, cells: _Cells, places: _Places, angles: tuple[Array, Array], steepness: tuple[Array, Array]
 ) -> tuple[Array, Array, tuple[Array, Array]]:
     """How far F rises above H (n,), and the depth above -K (n,), mm, infinite where F is not known to fall; and m.
 
-    `places` are those over cells whose worst angles lie between `angles`; `steepness` are a bound of |F_theta|, mm per
-    rad, and how far rollers are shifted, mm.
+    `places` are those over cells whose worst angles lie between `angles`; `steepness` are bounds of |F_theta|, mm per
+    rad, and how far rollers are shifted, mm (n,).
     """
     steep, shift = steepness
     growth, smallest = gauge.spread, np.maximum(places.size.bounds()[0], 0.0)
@@ -604,15 +610,23 @@ def _gaps(
                 break
             near[lost] *= 0.25
             own = (angles[0][lost], angles[1][lost])
-            found = found.replaced(lost, _falls(gauge, places.take(lost), own, near[lost], shift))
+            found = found.replaced(lost, _falls(gauge, places.take(lost), own, near[lost], shift[lost]))
             peaked = found.peaks(steep, shift, near)
+        # the nearer the peak, the less all that follows is blurred by what F may be elsewhere
+        needed = np.where(peaked, AMPLE * (steep + shift * found.turns) / found.fall, near)
+        sharper = np.flatnonzero(needed < SHARPER * near)
+        if len(sharper):
+            near[sharper] = needed[sharper]
+            own = (angles[0][sharper], angles[1][sharper])
+            found = found.replaced(sharper, _falls(gauge, places.take(sharper), own, near[sharper], shift[sharper]))
+            peaked[sharper] = found.peaks(steep, shift, near)[sharper]
         fall, (least, most) = found.fall, found.path
         beside = np.where(peaked, steep**2 / (2.0 * fall), np.inf)
         # where F is above 0 the roller may stand nearer: within a window at whose ends F is below 0
         top = np.where(np.isfinite(beside), top + beside, 0.0)
         window = np.where(fall > 0.0, 2.0 * near + ROOM * np.sqrt(2.0 * top / np.maximum(fall, 1e-6)), near)
         window = np.minimum(window, MOST_WINDOW)
-        found = _falls(gauge, places, angles, window, 0.0)
+        found = _falls(gauge, places, angles, window, np.zeros_like(window))
         fall, nearing = found.fall, found.nearing
         within = np.isfinite(beside) & (fall > 0.0) & (top < 0.5 * fall * (window - near) ** 2) & (nearing > 0.0)
         rate = places.size.magnitude * steep + seen * found.slope
@@ -632,7 +646,7 @@ class _Falls(NamedTuple):
     turns: Array
     path: tuple[Array, Array]
 
-    def peaks(self, steep: Array, shift: float, window: Array) -> Mask:
+    def peaks(self, steep: Array, shift: Array, window: Array) -> Mask:
         """Whether F of all rollers has its peak within the window (n,), rad, about where its slope is `steep` (n,)."""
         peaked: Mask = (self.fall > 0.0) & (steep + shift * self.turns <= self.fall * window)
         return peaked
@@ -654,8 +668,8 @@ class _Falls(NamedTuple):
         )
 
 
-def _falls(gauge: Gauge, places: _Places, angles: tuple[Array, Array], window: Array, shift: float) -> _Falls:
-    """Bounds over angles wider by a window (n,), rad, and for rollers that are shifted by up to `shift`, mm.
+def _falls(gauge: Gauge, places: _Places, angles: tuple[Array, Array], window: Array, shift: Array) -> _Falls:
+    """Bounds over angles wider by a window (n,), rad, and for rollers that are shifted by up to `shift` (n,), mm.
 
     `places` are those over cells whose worst angles lie between `angles`.
     """

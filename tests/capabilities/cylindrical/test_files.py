@@ -449,6 +449,7 @@ def test_remedies_hold(limit: str, words: str, change: tuple[str, str], tmp_path
     assert exported(tmp_path, changed(text, change)).ok
 
 
+@pytest.mark.costly("drums on both sides of each figure that is told")
 @pytest.mark.parametrize(
     ("text", "most", "ways"),
     [
