@@ -270,7 +270,7 @@ def _watch(arguments: argparse.Namespace) -> int:
         if outcome.report is None:
             complain(outcome.message)
             return None, outcome.message
-        _show(dict(outcome.report), verbose=arguments.verbose)
+        _show(dict(outcome.report), verbose=arguments.verbose, folder=outcome.report.path)
         sys.stdout.flush()  # a pipe hears of each saving too
         assert outcome.report.path is not None
         return (outcome.report.path / page.filename(recipe.name, (page,))).read_text("utf-8"), ""
@@ -341,7 +341,7 @@ def _run_recipes(
             if not arguments.json:
                 if arguments.verbose and len(entries) > 1:
                     say("")
-                _show(report, verbose=arguments.verbose)
+                _show(report, verbose=arguments.verbose, folder=outcome.report.path)
         if outcome.message:
             complain(outcome.message)
         if outcome.report is None:
@@ -366,10 +366,19 @@ def _tell_of_mixture(report: Entry, mixed: Sequence[str]) -> None:
         _complain(text)
 
 
-def _show(report: Entry, *, verbose: bool) -> None:
+def _show(report: Entry, *, verbose: bool, folder: Path | None = None) -> None:
+    """Print a report; where a check fails, with the `folder` that the files of this run went to, if there is one."""
     from camgeo.report.document import summary, table, verdict
 
-    say(f"{table(report)}\n\n{verdict(report)}" if verbose else summary(report))
+    told = []
+    if folder is not None and not report["ok"]:
+        kept = escaped(str(folder.with_name(report["recipe"])))
+        told.append(f"  the files of this run are in {escaped(str(folder))}; {kept} is left as it was")
+    if verbose:  # the verdict is the last line
+        *lines, last = f"{table(report)}\n\n{verdict(report)}".split("\n")
+        say("\n".join([*lines, *told, last]))
+    else:
+        say("\n".join([summary(report), *told]))
 
 
 # --- the other commands -----------------------------------------------------------------------------------------------
