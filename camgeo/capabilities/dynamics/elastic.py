@@ -237,6 +237,8 @@ def _with_spring(scene: _Scene, entry: dict[str, Any], drive: Drive) -> tuple[di
     entry |= _float_speed(scene, drive)
     least = state.force.least
     detail = f"greatest {state.force.greatest:.6g}; with the natural frequency {train.ratio(rpm):.4g} times the shaft's"
+    if least < 0.0 and entry["float_rpm"] is not None:
+        detail = begins_at(entry["float_rpm"], rpm) + detail
     unit = "N m" if scene.unit_name == "deg" else "N"
     at_deg = degrees(state.force.least_at)
     return entry, Check(FLOAT.name, least >= 0.0, least, 0.0, unit, at_deg, "at_least", detail=detail)
