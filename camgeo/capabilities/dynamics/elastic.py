@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING, Any
 
 from camgeo.capabilities.dynamics.declared import FLOAT, LEAST_BACKLASH
 from camgeo.capabilities.dynamics.keys import Dynamics
+from camgeo.capabilities.dynamics.running import begins_at
 from camgeo.checks.declared import STANDS
 from kin.numeric.angles import degrees
 from kin.numeric.check import Check, about, failed

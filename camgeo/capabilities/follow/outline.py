@@ -215,7 +215,9 @@ def _read_points(path: Path, asked: Reading) -> _Found:
     """The polygon through points; raises CallError where no unit is stated, or both file and call state one."""
     found = read_contour_points(path, asked.units or 1.0, asked.across)
     if found[0].unit is None and asked.units is None:
-        raise CallError(f"{escaped(str(path))}: the points state no unit: give units, or head them x_mm,y_mm; --units mm states it")
+        raise CallError(
+            f"{escaped(str(path))}: the points state no unit: give units, or head them x_mm,y_mm; --units mm states it"
+        )
     if found[0].unit is not None:
         _require_same_unit(path, asked.units, found[0].unit)
     chains = sorted((ClosedContour(points.contour) for points in found), key=lambda chain: -chain.contour.area)
