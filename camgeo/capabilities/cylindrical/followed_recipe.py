@@ -11,11 +11,8 @@ import numpy as np
 from camgeo.capabilities.cylindrical.followed import FollowedDrum
 from camgeo.common.errors import CallError
 from camgeo.common.terminal import escaped
-from camgeo.motions.recognised import roundest
+from camgeo.motions.recognised import in_flow, roundest
 from kin.numeric.records import replace
-
-if TYPE_CHECKING:
-    from camgeo.schema.change import Value
 
 FINE = 1e-6  # mm: lengths below this are the numbers' rounding
 
@@ -58,7 +55,7 @@ def _recipe_of(followed: FollowedDrum, table: str) -> str:
         reading = followed.scale * followed.within
         motion = f"{{table: {json.dumps(table, ensure_ascii=False)}, reading: {reading:.6g}}}"
     else:
-        motion = f"[{', '.join(_flow(row) for row in rows)}]"
+        motion = f"[{', '.join(in_flow(row) for row in rows)}]"
     keys = {**_cam(followed, zero), "motion": motion}
     part = ", ".join(f"{key}: {value:.9g}" for key, value in _part(followed).items())
     lines = [
@@ -74,13 +71,6 @@ def _recipe_of(followed: FollowedDrum, table: str) -> str:
         "",
     ]
     return "\n".join(lines)
-
-
-def _flow(value: Value) -> str:
-    """A segment in one line."""
-    if isinstance(value, dict):
-        return f"{{{', '.join(f'{key}: {_flow(entry)}' for key, entry in value.items())}}}"
-    return f"{value:.9g}" if isinstance(value, float) else str(value)
 
 
 def _unsure(followed: FollowedDrum) -> float:
