@@ -4,14 +4,18 @@ from __future__ import annotations
 
 import json
 import math
+from typing import TYPE_CHECKING
 
 import numpy as np
 
 from camgeo.capabilities.cylindrical.followed import FollowedDrum
 from camgeo.common.errors import CallError
 from camgeo.common.terminal import escaped
-from camgeo.motions.recognised import in_flow, roundest
+from camgeo.motions.recognised import roundest
 from kin.numeric.records import replace
+
+if TYPE_CHECKING:
+    from camgeo.schema.change import Value
 
 FINE = 1e-6  # mm: lengths below this are the numbers' rounding
 
@@ -54,7 +58,7 @@ def _recipe_of(followed: FollowedDrum, table: str) -> str:
         reading = followed.scale * followed.within
         motion = f"{{table: {json.dumps(table, ensure_ascii=False)}, reading: {reading:.6g}}}"
     else:
-        motion = f"[{', '.join(in_flow(row) for row in rows)}]"
+        motion = f"[{', '.join(_flow(row) for row in rows)}]"
     keys = {**_cam(followed, zero), "motion": motion}
     part = ", ".join(f"{key}: {value:.9g}" for key, value in _part(followed).items())
     lines = [
@@ -70,6 +74,13 @@ def _recipe_of(followed: FollowedDrum, table: str) -> str:
         "",
     ]
     return "\n".join(lines)
+
+
+def _flow(value: Value) -> str:
+    """A segment in one line."""
+    if isinstance(value, dict):
+        return f"{{{', '.join(f'{key}: {_flow(entry)}' for key, entry in value.items())}}}"
+    return f"{value:.9g}" if isinstance(value, float) else str(value)
 
 
 def _unsure(followed: FollowedDrum) -> float:
