@@ -24,7 +24,6 @@ if TYPE_CHECKING:
     from collections.abc import Sequence
 
     from camgeo.capabilities.follow.extension import FollowedOver
-    from camgeo.capabilities.follow.laws import Laws
     from camgeo.capabilities.follow.library import Followed, Rest
     from kin.numeric.arrays import Array
 
@@ -136,32 +135,13 @@ def run(arguments: argparse.Namespace) -> int:
     if arguments.page is not None:
         texts[arguments.page] = judged_by_recipe(followed).page or ""
     write_new(texts)
-    with_laws = arguments.recipe is not None or arguments.page is not None
     if arguments.json:
         from camgeo.report.document import as_json
 
-        told = document(followed) | (_programme(followed.laws) if with_laws else {})
-        say_json(as_json(told))
+        say_json(as_json(document(followed)))
     else:
-        say("\n".join([summary(followed), *(_law_lines(followed, lifts) if with_laws else [])]))
+        say("\n".join([summary(followed), *([] if lifts is None else followed.law_lines(Path(lifts).name))]))
     return OK
-
-
-def _programme(laws: Laws) -> dict[str, Any]:
-    """The recipe's motion as plain data: its segments, None for a table, and why there are none."""
-    return {"programme": laws.rows, "strokes": list(laws.lines), "no_programme": laws.why}
-
-
-def _law_lines(followed: Followed, lifts: str | None) -> list[str]:
-    """Lines of text on the recipe's motion: its laws, or why it is a table."""
-    laws, table = followed.laws, "a table" if lifts is None else f"the table {escaped(Path(lifts).name)}"
-    if laws.rows is None:
-        return [f"  the recipe has the motion as {table}: {laws.why}"]
-    unit = "mm" if followed.unit == "mm" else "deg"
-    return [
-        *(f"  {line}" for line in laws.lines),
-        f"  the recipe has these laws, within {laws.off:.2g} {unit} of the motion, and names {table} beside them",
-    ]
 
 
 def _demand_own(arguments: argparse.Namespace) -> None:

@@ -287,6 +287,18 @@ class Followed:
         turned = math.degrees(self._asked.turn) + (found.begin if self.rotation == "ccw" else -found.begin)
         return found._replace(why=f"{found.why}; give --turn={math.remainder(turned, 360.0):.6g} to begin elsewhere")
 
+    def law_lines(self, table: str) -> list[str]:
+        """Lines of text on the motion of a recipe by laws: what they are, or why it has the file `table` of lifts."""
+        laws, name = self.laws, escaped(table)
+        if laws.rows is None:
+            return [f"  the recipe has the motion as the table {name}: {laws.why}"]
+        unit = "mm" if self.unit == "mm" else "deg"
+        within = f"within {laws.off:.2g} {unit} of the motion"
+        return [
+            *(f"  {line}" for line in laws.lines),
+            f"  the recipe has these laws, {within}, and names the table {name} beside them",
+        ]
+
     @property
     def _reading(self) -> float:
         """The reading in the motion's unit: mm, or on an arm the angle that moves the touch by it, rad."""
