@@ -25,8 +25,8 @@ from segments import changed, drawn
 import camgeo
 from camgeo.api.report import explanation
 from camgeo.api.root import root_by_key, root_of
-from camgeo.capabilities.follow.command import summary  # needs: follow
-from camgeo.capabilities.follow.library import READING, judged_by_recipe  # needs: follow
+from camgeo.capabilities.follow.followed import judged_by_recipe  # needs: follow
+from camgeo.capabilities.follow.library import READING  # needs: follow
 from camgeo.checks.declared import declaration
 from camgeo.common.rounding import upward  # needs: follow
 from camgeo.files.errors import MissingExtraError
@@ -658,7 +658,7 @@ def follow(file: str, follower: dict[str, Any]) -> dict[str, Any]:
     folder = Path(OUT)
     folder.mkdir(parents=True, exist_ok=True)
     (folder / f"{stem}-motion.csv").write_text(followed.table(), "utf-8")
-    output: dict[str, Any] = {"verdict": summary(followed), "page": "", "ok": True}
+    output: dict[str, Any] = {"verdict": followed.summary(), "page": "", "ok": True}
     output["files"] = [{"name": f"{stem}-motion.csv", "path": str(folder / f"{stem}-motion.csv")}]
     table = f"{stem}-lifts.csv"
     say("a recipe of this motion, and the file by it")

@@ -9,7 +9,9 @@ TYPE_CHECKING = False  # as typing has it
 if TYPE_CHECKING:
     from camgeo.capabilities.camshaft.keys import CamshaftRecipe  # needs: camshaft
     from camgeo.capabilities.camshaft.library import CamshaftDesign  # needs: camshaft
-    from camgeo.capabilities.follow.library import Followed, Rest, follow  # needs: follow
+    from camgeo.capabilities.cylindrical.followed import FollowedDrum  # needs: cylindrical
+    from camgeo.capabilities.follow.followed import Followed, Rest  # needs: follow
+    from camgeo.capabilities.follow.library import follow  # needs: follow
     from camgeo.capabilities.sweep.library import Candidate, Search, search  # needs: sweep
 
     __all__: list[str] = [
@@ -17,6 +19,7 @@ if TYPE_CHECKING:
         "CamshaftRecipe",  # needs: camshaft
         "Candidate",  # needs: sweep
         "Followed",  # needs: follow
+        "FollowedDrum",  # needs: cylindrical
         "Rest",  # needs: follow
         "Search",  # needs: sweep
         "follow",  # needs: follow

@@ -61,6 +61,12 @@ def number_of(name: str, value: object) -> float:
         return math.inf if value > 0 else -math.inf  # type: ignore[operator]
 
 
+def tuple_of(name: str, value: object) -> tuple[float, ...]:
+    """Argument that is a tuple of numbers, as floats; raises TypeError for anything else."""
+    demand_type(name, value, tuple, "a tuple of numbers")
+    return tuple(number_of(name, item) for item in value) if isinstance(value, tuple) else ()
+
+
 def numbers_of(name: str, value: object) -> Array:
     """Argument that is a number or an array of numbers, as floats in its shape.
 

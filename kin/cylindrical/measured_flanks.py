@@ -4,6 +4,10 @@ The distance of a point from the exact flank is by the roller that comes nearest
 0 where there is too much metal. A point that is off by e moves the roller that touches there by e/(n.T), n being the
 normal out of the metal and T the roller's way. Along the turn, at one radius, errors are smoothed by waves, by least
 squares; what is left is noise, and points that stand far out of it are named and left out of the motion.
+
+Centres of a probe's ball lie on the flank of a roller that is smaller by the ball, on the same path: surfaces by
+rollers of one axis are parallel. They are held against that one, exactly, and the metal is the ball's radius along the
+normal from them.
 """
 
 from __future__ import annotations
@@ -18,7 +22,7 @@ from kin.cylindrical.inspected import ANY
 from kin.numeric.angles import TURN
 from kin.numeric.errors import CamgeoError
 from kin.numeric.feet import equal_steps
-from kin.numeric.records import dataclass
+from kin.numeric.records import dataclass, replace
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -32,6 +36,7 @@ UNKNOWNS = "gzxyab"  # a turn about z, shifts along z, x and y, tilts about x an
 ROUNDS = 6  # of Gauss and Newton
 SETTLED = 1e-9  # mm
 ALIKE = 0.1  # of the roller's radius, within which nine of ten points of a drum lie
+EVEN = 0.1  # of the distance at which points lie off, about which half of those of a ball's centres scatter
 MOST = 0.9  # of the points: so many have to lie so near
 BEYOND = 0.05  # of the depth of the flank, by which points may lie beyond it
 LOOKED = 400  # points of a wrong drum that are looked at
@@ -56,7 +61,7 @@ class Measured:
 
     number  of the flank among the drum's gauges
     rows    (n,) numbers of the points in their file
-    places  (n, 3) as placed, mm
+    places  (n, 3) of the metal as placed, mm, where a ball touched it
     e       (n,) distance from the exact flank along its normal, mm, above 0 out of the metal
     theta   (n,) shaft angle, rad, at which the roller touches there
     normal  (n, 3) out of the metal
@@ -119,21 +124,22 @@ class MadeDrum:
     rings: tuple[Ring, ...]
 
 
-def made_drum(drum: DrumIntent, places: Array, flank: Indices, unknowns: str = "") -> MadeDrum:
+def made_drum(drum: DrumIntent, places: Array, flank: Indices, unknowns: str = "", ball: float = 0.0) -> MadeDrum:
     """Judge points (n, 3), mm, as their file has them, whose flanks (n,) are 0 lower, 1 upper, or ANY.
 
-    `unknowns` are letters of UNKNOWNS that least squares may take out. Raises UnlikeError for points of another drum,
-    UnsettledError where nothing of the drum is bounded.
+    `unknowns` are letters of UNKNOWNS that least squares may take out. Points are centres of a `ball` of a radius, mm,
+    or of the metal (0). Raises UnlikeError for points of another drum, and for a ball that is no smaller than the
+    roller, UnsettledError where nothing of the drum is bounded.
     """
-    gauges = gauges_of(drum)
+    gauges = _probed(drum, ball)
     for gauge in gauges:
         gauge.demand_bounded()
     own = places * [1.0, -1.0, 1.0] if drum.mirrored else places
-    _demand_alike(drum, gauges, own, flank)
+    _demand_alike(drum, gauges, own, flank, ball)
     values, free = np.zeros(6), [UNKNOWNS.index(letter) for letter in unknowns]
     uncertain = np.zeros(6)
     for _ in range(ROUNDS if free else 0):
-        flanks = _sorted(gauges, drum, _moved(own, values), flank)
+        flanks = _sorted(gauges, drum, _moved(own, values), flank, ball)
         columns = np.concatenate([_columns(each) for each in flanks])[:, free]
         e = np.concatenate([each.e for each in flanks])
         step = np.linalg.lstsq(columns, -e, rcond=None)[0]
@@ -142,11 +148,24 @@ def made_drum(drum: DrumIntent, places: Array, flank: Indices, unknowns: str = "
         uncertain[free] = COVERAGE * np.sqrt(left * np.diag(np.linalg.pinv(columns.T @ columns)))
         if float(np.abs(step).max()) < SETTLED:
             break
-    flanks = _sorted(gauges, drum, _moved(own, values), flank)
+    flanks = _sorted(gauges, drum, _moved(own, values), flank, ball)
     rings = [ring for each in flanks for ring in _rings(each, drum)]
     # the part lies where its points had to be moved from
     told = -values * ([-1.0, 1.0, 1.0, -1.0, -1.0, 1.0] if drum.mirrored else np.ones(6))
     return MadeDrum(tuple(flanks), Placing(told, uncertain), tuple(rings))
+
+
+def _probed(drum: DrumIntent, ball: float) -> list[Gauge]:
+    """The drum's gauges, smaller by a ball, mm; raises UnlikeError for one that is no smaller than they are."""
+    across = math.hypot(1.0, drum.follower.growth)  # square to the axis of a cone, for a length square to its surface
+    gauges = gauges_of(drum)
+    most = min(gauge.smallest for gauge in gauges) / across
+    if not ball < most:
+        raise UnlikeError(
+            f"a ball of radius {ball:.6g} mm does not go where a roller of {most:.6g} mm does: give its radius, not "
+            f"its diameter, or points of the metal"
+        )
+    return [replace(gauge, radius=gauge.radius - ball * across) for gauge in gauges]
 
 
 def _moved(places: Array, values: Array) -> Array:
@@ -167,8 +186,10 @@ def _columns(flank: Measured) -> Array:
     return np.stack([ny * px - nx * py, nz, nx, ny, nz * py - ny * pz, nx * pz - nz * px], axis=-1)
 
 
-def _sorted(gauges: Sequence[Gauge], drum: DrumIntent, places: Array, flank: Indices) -> list[Measured]:
-    """Points by flank: as their file says, else by the nearer one."""
+def _sorted(
+    gauges: Sequence[Gauge], drum: DrumIntent, places: Array, flank: Indices, ball: float = 0.0
+) -> list[Measured]:
+    """Points by flank: as their file says, else by the nearer one; the metal is a `ball` from them, mm."""
     worst = [gauge.worst(places) for gauge in gauges]
     off = [
         np.where((each.height < gauge.smallest) & np.isfinite(each.distance), np.abs(each.distance), np.inf)
@@ -195,14 +216,15 @@ def _sorted(gauges: Sequence[Gauge], drum: DrumIntent, places: Array, flank: Ind
         still = np.zeros_like(lift)
         moving = guide.axis(lift, still + 1.0, still)
         way = upright * (across * moving.y1 + up * moving.z1)
-        found.append(Measured(gauge, k, rows, own, -worst[k].distance[rows], theta, normal, way))
+        metal = own - ball * normal
+        found.append(Measured(gauge, k, rows, metal, -worst[k].distance[rows], theta, normal, way))
     return found
 
 
 # --- points of another drum -------------------------------------------------------------------------------------------
 
 
-def _demand_alike(drum: DrumIntent, gauges: Sequence[Gauge], places: Array, flank: Indices) -> None:
+def _demand_alike(drum: DrumIntent, gauges: Sequence[Gauge], places: Array, flank: Indices, ball: float) -> None:
     """Raise UnlikeError for points that are not of this drum, with what they look like."""
 
     def off(own: Array) -> float:
@@ -232,6 +254,12 @@ def _demand_alike(drum: DrumIntent, gauges: Sequence[Gauge], places: Array, flan
         if off(tried) <= limit:
             raise UnlikeError(f"these points look as if {words}")
     if math.isfinite(here):
+        e = np.concatenate([each.e for each in _sorted(gauges, drum, places, flank)])
+        middle = float(np.nanmedian(e))
+        if limit < abs(middle) < drum.follower.radius and float(np.nanmedian(np.abs(e - middle))) < EVEN * abs(middle):
+            how = f"{abs(middle):.4g} mm too {'large' if middle > 0.0 else 'small'} all round"
+            remedy = "leave `--probe-radius` out, or give its own" if ball else "`--probe-radius` of the ball?"
+            raise UnlikeError(f"these points look {how}: {remedy}")
         some = slice(None, None, max(len(places) // LOOKED, 1))
         few = places[some], flank[some]
         turn = _best(gauges, drum, few, 0, TURN / TRIED * np.arange(TRIED, dtype=np.float64))

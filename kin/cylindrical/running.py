@@ -5,6 +5,9 @@ a stretch between two rollers is a rib, and the outermost end may be that of an 
 are tracks. A roller that stands on the line of a flank at that radius tells which metal is below its axis and which is
 above; then it is set down on all facets of its side, over its own length, at each angle: a place by contact, of the
 file as it is, with no intent.
+
+A groove of several turns crosses itself, and is followed over all of them (`kin.cylindrical.wound`). Where a wall is
+gone the pin of a shoe touches the other one, and where both are, its way is a cubic between the places beside.
 """
 
 from __future__ import annotations
@@ -21,6 +24,7 @@ from kin.cylindrical.gauge import gauges_of
 from kin.cylindrical.intent import DrumIntent, End, Groove, Rib
 from kin.cylindrical.lifts import Lifts
 from kin.cylindrical.unknown import UnknownError
+from kin.cylindrical.wound import windings
 from kin.law.piecewise import Piecewise
 from kin.law.segment import Constant
 from kin.numeric.angles import TURN, degrees
@@ -36,6 +40,7 @@ if TYPE_CHECKING:
     from kin.cylindrical.intent import Track
     from kin.cylindrical.roller import Gauge
     from kin.cylindrical.unknown import Column, Drum
+    from kin.cylindrical.wound import Winding
     from kin.law.contacts import Side
     from kin.numeric.arrays import Array, Indices, Mask
 
@@ -45,7 +50,7 @@ ENDS: tuple[Kind, ...] = ("top", "bottom")
 LOOKS = 2880  # lines along the axis, over a turn
 STEPS = 720  # angles at which the roller is set down
 GAP = 0.5  # mm that a roller stands off the floor where it is not said where it begins
-BENEATH = 1e-3  # of the radius of the blank, by which lines lie within it where no floor is known yet
+BENEATH = 1e-3  # of the radius of the blank, by which lines lie within its facets, and a roller may stand out of it
 ROUNDS = 4  # of the angle at which a roller on an arm passes over a point
 STILL = 4.0  # times the facets' sag and rounding: an end that varies by less is no track
 LEANING = 0.2  # of an arm's length, by which its swing may move the roller aside where nothing is known of it yet
@@ -53,6 +58,10 @@ CORNERS = 2.0  # times the facets' sag: their corners may be as far off again, w
 MOST_REACH = 1.4  # rad, beyond which a line about the axis is not touched
 ASIDE = 0.02  # of the roller's radius, by which a guess may put it aside
 SPREAD = 3  # steps to both sides, over which a slope is taken
+FAR = 3.0  # times the roller's radius: facets of another turn, farther from its axis than this, hold nothing
+BESIDE = 2 * TURN / STEPS  # rad, beside the end of a wall, in which it is not said to hold the roller
+FIT = 12  # steps to either side of a stretch without walls, by which its cubic is found
+ASTRAY = 0.25  # of the width of a groove, within which its turns at another radius are the same
 
 
 class StatedRoller(NamedTuple):
@@ -60,7 +69,9 @@ class StatedRoller(NamedTuple):
 
     `inner` and `outer` are where it bears along its axis, None for the floor and GAP, and for the blank. A cone by
     `taper`, rad, or "axis" for an apex on the drum's axis, has its radius `at` a place, None for half way. `height` is
-    that of the track at angle 0, where there are several; `distance` that of a rib's two rollers.
+    that of the track at angle 0, where there are several, or of the turn that begins there; `distance` that of a rib's
+    two rollers. `turns` is after how many the track closes, None for what the file shows. A `shoe` is twice the radius
+    wide, and turns on a pin that bears as the roller does.
     """
 
     radius: float
@@ -73,11 +84,13 @@ class StatedRoller(NamedTuple):
     arm: Arm | None = None
     height: float | None = None
     distance: float | None = None
+    turns: int | None = None
+    shoe: bool = False
 
 
 @dataclass(frozen=True, eq=False)
 class Run:
-    """The motion of a roller on an unknown drum, at equal steps of the turn from 0.
+    """The motion of a roller on an unknown drum, at equal steps of the turn from 0, or of all turns.
 
     kind      of the track
     follower  the roller, where it bears, its guide; its law is none
@@ -88,6 +101,10 @@ class Run:
     lean      greatest pressure angle, rad, about, at the roller's inner end
     error     by how much facets may put a position wrong, about, in its unit
     distance  of the axes of a rib's two rollers, mm, None of others
+    touches   whether the lower and the upper flank hold the roller (2, n); in a crossing of several turns a position on
+              a wall that is gone is that on the other one less the play beside, or on a cubic between both sides
+    gap       longest stretch without a wall along the groove, mm, about; 0 without a crossing
+    sag       how far facets stand off the surface between them, mm, about
     """
 
     kind: Kind
@@ -97,7 +114,15 @@ class Run:
     upper: Array
     lean: Array
     error: float
-    distance: float | None = None
+    distance: float | None
+    touches: Mask
+    gap: float
+    sag: float
+
+    @property
+    def turns(self) -> int:
+        """Turns of the drum after which the motion repeats."""
+        return self.follower.turns
 
     @property
     def closed(self) -> bool:
@@ -108,12 +133,25 @@ class Run:
 class _Track(NamedTuple):
     """A track by the heights of its lower and upper flank, mm, at lines along the axis (n,); nan without a flank.
 
-    The lower flank is that on which a roller stands.
+    The lower flank is that on which a roller stands. A groove of several turns has as many times LOOKS lines, and
+    `stands` (2, n) says where it has its walls; None of one turn.
     """
 
     kind: Kind
     lower: Array
     upper: Array
+    stands: Mask | None = None
+
+    @property
+    def turns(self) -> int:
+        """Turns after which it closes."""
+        return len(self.lower) // LOOKS
+
+    def begun(self, turn: int) -> _Track:
+        """The same from the beginning of another turn on."""
+        lower, upper = (np.roll(row, -turn * LOOKS) for row in (self.lower, self.upper))
+        stands = None if self.stands is None else np.roll(self.stands, -turn * LOOKS, axis=1)
+        return _Track(self.kind, lower, upper, stands)
 
 
 def run(drum: Drum, stated: StatedRoller) -> Run:
@@ -131,7 +169,8 @@ def run(drum: Drum, stated: StatedRoller) -> Run:
             f"the blank is at {drum.radius:.6g} mm, and the roller bears {begins}to {outer:.6g} mm",
             "give from and to between floor and blank",
         )
-    probe = 0.5 * (stated.inner + outer) if stated.inner is not None else min(outer, (1.0 - BENEATH) * drum.radius)
+    beneath = (1.0 - BENEATH) * drum.rim
+    probe = 0.5 * (stated.inner + outer) if stated.inner is not None else min(outer, beneath)
     track = _track(drum, stated, probe)
     floor = _floor(drum, track, stated, probe)
     inner = floor + GAP if stated.inner is None else stated.inner
@@ -144,6 +183,7 @@ def run(drum: Drum, stated: StatedRoller) -> Run:
     if stated.inner is None:
         probe = 0.5 * (inner + outer)
         track = _track(drum, stated._replace(kind=track.kind), probe)
+    _demand_led(track, stated)
     distance = stated.distance
     if track.kind == "rib" and distance is None:
         if stated.arm is not None:
@@ -156,17 +196,20 @@ def run(drum: Drum, stated: StatedRoller) -> Run:
         inner,
         outer,
         0.0 if stated.arm is None else stated.arm.pivot,
-        Piecewise(np.array([0.0, TURN]), (Constant(0.0),)),
+        Piecewise(np.array([0.0, TURN * track.turns]), (Constant(0.0),)),
         stated.offset,
         taper,
         middle if taper else None,
         stated.arm,
+        track.turns,
     )
     depth = drum.radius - floor
     gauges = gauges_of(DrumIntent(follower, _flanks(track.kind, depth, distance or 0.0), drum.radius, drum.length))
-    theta = equal_steps(STEPS)
-    found = {-1: np.full(STEPS, np.nan), 1: np.full(STEPS, np.nan)}
-    steepest, leans = 0.0, np.zeros(STEPS)
+    count = STEPS * track.turns
+    theta = equal_steps(count) * track.turns
+    found = {-1: np.full(count, np.nan), 1: np.full(count, np.nan)}
+    touches, gap = _touches(drum, track, stated, (inner, probe, outer)) if track.stands is not None else (None, 0.0)
+    steepest, leans = 0.0, np.zeros(count)
     for gauge in gauges:
         line = track.lower if gauge.side < 0 else track.upper
         beside = gauge.level - follower.level
@@ -174,7 +217,10 @@ def run(drum: Drum, stated: StatedRoller) -> Run:
         size = stated.radius + (probe - (follower.at or 0.0)) * follower.growth
         guess = _guessed(gauge, guide, line, (probe, size, _aside(follower)))
         found[gauge.side] = _placed(drum, gauge, guide, guess, theta)
-        lean = _leaning(follower, beside, gauge.side, found[gauge.side])
+    if touches is not None:
+        found[-1], found[1] = _bridged(found[-1], found[1], touches)
+    for gauge in gauges:
+        lean = _leaning(follower, gauge.level - follower.level, gauge.side, found[gauge.side])
         leans = np.where(np.abs(lean) > np.abs(leans), lean, leans)
         steepest = max(steepest, float(np.abs(lean).max()))
     lower, upper = found[-1], found[1]
@@ -182,8 +228,10 @@ def run(drum: Drum, stated: StatedRoller) -> Run:
         distance = float((lower - upper).mean())
         lower, upper = lower - 0.5 * distance, upper + 0.5 * distance
     lever = gauges[0].lever
-    error = (CORNERS * drum.sag + math.sqrt(3.0) * drum.rounding) / max(math.cos(steepest), 0.1) / lever
-    return Run(track.kind, follower, floor, lower, upper, leans, error, distance)
+    sag = drum.sag if track.turns == 1 else drum.crossed_sag
+    error = (CORNERS * sag + math.sqrt(3.0) * drum.rounding) / max(math.cos(steepest), 0.1) / lever
+    held = np.isfinite([lower, upper]) if touches is None else touches
+    return Run(track.kind, follower, floor, lower, upper, leans, error, distance, held, gap, sag)
 
 
 def _flanks(kind: Kind, depth: float, distance: float) -> Track:
@@ -210,6 +258,10 @@ def _track(drum: Drum, stated: StatedRoller, radius: float) -> _Track:
     voids, metals = _stretches(columns, 1), _stretches(columns, 0)
     tracks: dict[Kind, list[_Track]] = {"groove": [], "rib": [], "top": [], "bottom": []}
     tracks["groove"] = [_Track("groove", low, high) for low, high in voids]
+    if not voids or (stated.turns or 1) > 1:
+        tracks["groove"] += [
+            _Track("groove", each.lower, each.upper, each.stands) for each in windings(columns, radius)
+        ]
     # upper flank of the roller below a rib, lower flank of that above it
     both = [(low, high) for low, high in metals if np.ptp(low) > still and np.ptp(high) > still]
     tracks["rib"] = [_Track("rib", high, low) for low, high in both]
@@ -229,8 +281,16 @@ def _track(drum: Drum, stated: StatedRoller, radius: float) -> _Track:
             raise UnknownError(f"it may be of kind {' or '.join(shown)}", "give drum with one of them")
         kind = shown[0]
     chosen = tracks[kind]
+    if stated.turns is not None and chosen:
+        own = [track for track in chosen if track.turns == stated.turns]
+        if not own:
+            counts = sorted({track.turns for track in chosen})
+            words = " or ".join("a turn" if count == 1 else f"{count} turns" for count in counts)
+            raise UnknownError(f"the {_NOUNS[kind]} closes after {words}, not {stated.turns}", "leave turns out")
+        chosen = own
     if stated.height is not None and chosen:
-        chosen = [min(chosen, key=lambda track: abs(_level(track) - (stated.height or 0.0)))]
+        begun = [track.begun(turn) for track in chosen for turn in range(track.turns)]
+        chosen = [min(begun, key=lambda track: abs(_level(track) - (stated.height or 0.0)))]
     if not chosen:
         raise UnknownError(
             f"no {_NOUNS[kind]} that goes round the turn and closes is found at a radius of {radius:.6g} mm",
@@ -250,9 +310,9 @@ _NOUNS: dict[Kind, str] = {
 }
 
 
-def _looks() -> Array:
-    """Polar angles of lines along the axis: half a step off 0, so that they meet no regular edges."""
-    return equal_steps(LOOKS) + 0.5 * TURN / LOOKS
+def _looks(turns: int = 1) -> Array:
+    """Polar angles of lines along the axis over turns: half a step off 0, so that they meet no regular edges."""
+    return equal_steps(LOOKS * turns) * turns + 0.5 * TURN / LOOKS
 
 
 def _level(track: _Track) -> float:
@@ -288,7 +348,7 @@ def _floor(drum: Drum, track: _Track, stated: StatedRoller, radius: float) -> fl
 
     A ring of an end cam that stands over what lies within it has its own floor, by where the roller begins.
     """
-    theta, (kind, lower, upper) = _looks(), track
+    theta, kind, lower, upper = _looks(track.turns), track.kind, track.lower, track.upper
     if kind in ENDS and stated.inner is not None:
         return stated.inner - GAP
     # the axis of a roller on the flank is about so far off it
@@ -297,6 +357,93 @@ def _floor(drum: Drum, track: _Track, stated: StatedRoller, radius: float) -> fl
     if math.isnan(floor) or floor >= radius:
         raise UnknownError(f"no floor is found beside the {_NOUNS[kind]} at a radius of {radius:.6g} mm", "give from")
     return floor
+
+
+# --- several turns ---------------------------------------------------------------------------------------------------
+
+
+def _demand_led(track: _Track, stated: StatedRoller) -> None:
+    """Raise UnknownError for a roller that drops into a crossing, and for a shoe where no groove leads it straight."""
+    if stated.shoe and track.kind != "groove":
+        raise UnknownError(
+            f"a shoe is led by a groove, and this is of kind {track.kind}", "give roller, and leave width out"
+        )
+    if track.turns > 1 and not stated.shoe:
+        raise UnknownError(
+            f"the groove closes after {track.turns} turns and crosses itself, where a roller drops in",
+            f"give width {2.0 * stated.radius:.6g} of a shoe in place of roller",
+        )
+
+
+def _touches(drum: Drum, track: _Track, stated: StatedRoller, radii: tuple[float, ...]) -> tuple[Mask, float]:
+    """Whether both flanks of a groove of several turns hold the pin at equal steps, (2, n); and the longest gap, mm.
+
+    A flank holds it where its wall stands at all radii, mm, at the place of contact there, and beside that.
+    """
+    count, theta = STEPS * track.turns, equal_steps(STEPS * track.turns) * track.turns
+    middle = 0.5 * (track.lower + track.upper)
+    held, gap = np.ones((2, count), dtype=np.bool_), 0.0
+    for radius in radii:
+        at = min(radius, (1.0 - BENEATH) * drum.rim)
+        own = _alike(windings(drum.columns(at, _looks()), at), middle, at)
+        slope = np.gradient(np.concatenate([middle[-1:], middle, middle[:1]]))[1:-1] * (LOOKS / TURN)
+        sine = slope / np.hypot(slope, at)
+        for side, wall in enumerate(own.stands):
+            # a groove that climbs is touched below ahead of the pin, and above behind it
+            ahead = (1 - 2 * side) * np.arcsin(np.clip(stated.radius * _at(sine, theta) / at, -1.0, 1.0))
+            for beside in (-BESIDE, 0.0, BESIDE):
+                place = np.floor(((theta + ahead + beside) / TURN) * LOOKS).astype(np.intp) % len(wall)
+                held[side] &= wall[place]
+            gap = max(gap, _longest(~wall, np.hypot(at, slope) * (TURN / LOOKS)))
+    return held, gap
+
+
+def _alike(found: Sequence[Winding], middle: Array, radius: float) -> Winding:
+    """That of the grooves at a radius, mm, and of its turns, which is the one with these middles (n,)."""
+    for winding in found:
+        for turn in range(len(winding.lower) // LOOKS):
+            own = winding.begun(turn, LOOKS)
+            if len(own.lower) == len(middle):
+                off = np.abs(0.5 * (own.lower + own.upper) - middle)
+                if float(off.max()) <= ASTRAY * float((own.upper - own.lower).min()):
+                    return own
+    raise UnknownError(
+        f"the turns of the groove are not told from one another at a radius of {radius:.6g} mm", "give from and to"
+    )
+
+
+def _longest(gone: Mask, lengths: Array) -> float:
+    """Greatest length of a stretch of lines, over the turns and round, in which all are gone; lengths (n,) each."""
+    if gone.all():
+        return float(lengths.sum())
+    begin = int(np.argmin(gone))
+    total, most = 0.0, 0.0
+    for is_gone, length in zip(np.roll(gone, -begin).tolist(), np.roll(lengths, -begin).tolist(), strict=True):
+        total = total + length if is_gone else 0.0
+        most = max(most, total)
+    return most
+
+
+def _bridged(lower: Array, upper: Array, held: Mask) -> tuple[Array, Array]:
+    """Positions (n,), mm, on both flanks where one of them is gone, or both."""
+    both = held.all(axis=0)
+    if not both.any():
+        raise UnknownError("the groove has nowhere both of its walls, so that its play is not told")
+    n, steps = len(lower), np.arange(len(lower))
+    # facets are as wide as some steps: the mean of these has less of their error
+    known = (upper - lower)[both]
+    mean = np.mean([np.roll(known, k) for k in range(-FIT // 2, FIT // 2 + 1)], axis=0)
+    play = np.interp(steps, steps[both], mean, period=n)
+    lower = np.where(held[0], lower, upper - play)
+    free: Mask = ~(held[0] | held[1])
+    for first in np.flatnonzero(free & ~np.roll(free, 1)):
+        length = int(np.argmin(np.roll(free, -first)))
+        near = np.concatenate([np.arange(-FIT, 0), length + np.arange(FIT)])
+        near = near[~free[(first + near) % n]]
+        cubic = np.polynomial.Polynomial.fit(near, lower[(first + near) % n], 3)
+        inside = np.arange(length)
+        lower[(first + inside) % n] = cubic(inside)
+    return lower, np.where(held[1], upper, lower + play)
 
 
 # --- the roller -------------------------------------------------------------------------------------------------------
@@ -310,7 +457,7 @@ class _Near(Lifts):
     @staticmethod
     def of(lifts: Lifts, guess: Array) -> _Near:
         """A guess (n,) in place of a law."""
-        near = _Near(lifts.law)
+        near = _Near(lifts.law, lifts.turns)
         object.__setattr__(near, "guess", guess)
         return near
 
@@ -327,7 +474,7 @@ def _guessed(gauge: Gauge, guide: Guide, line: Array, roller: tuple[float, float
     UnknownError where it touches none of the line.
     """
     radius, size, aside = roller
-    step = TURN / len(line)
+    step = TURN / LOOKS
     most = int(min(math.asin(min(1.0, (size + aside) / radius)), MOST_REACH) / step) + 1
     best = np.full(len(line), -np.inf)
     still, sizes = np.zeros(len(line)), np.full(len(line), size)
@@ -335,7 +482,7 @@ def _guessed(gauge: Gauge, guide: Guide, line: Array, roller: tuple[float, float
         y = np.full(len(line), radius * math.sin(k * step))
         best = np.fmax(best, guide.touching((y, np.roll(line, -k)), still, sizes, gauge.side).gives)
     if not np.isfinite(best).all():
-        at = degrees(float(_looks()[int(np.argmin(np.isfinite(best)))]))
+        at = degrees(float(_looks(len(line) // LOOKS)[int(np.argmin(np.isfinite(best)))]))
         raise UnknownError(f"the roller touches nothing of the {gauge.name} flank at about {at:.6g} degrees")
     return np.asarray(-gauge.side * best / guide.lever)
 
@@ -353,21 +500,21 @@ def _placed(drum: Drum, gauge: Gauge, guide: Guide, guess: Array, theta: Array) 
     Metal is that below its axis as it stands by a `guess` at lines along the axis. Raises UnknownError where that
     cannot be told, and where the roller touches nothing.
     """
-    metal = _metal(drum, gauge, guide, guess)
-    corners, phi = drum.facets[metal], drum.phi[metal]
+    metal, turn = _metal(drum, gauge, guide, guess)
+    corners, phi = drum.facets[metal], drum.phi[metal] + TURN * turn[:, None]
     reach = math.asin(min(1.0, (gauge.largest + _aside_of(guide, guess)) / gauge.inner))
     kept, at = [], []
     low, high = phi.min(axis=1) - reach, phi.max(axis=1) + reach
     order = np.argsort(low)
     low, high, corners = low[order], high[order], corners[order]
-    widest = float((high - low).max(initial=0.0))
-    for angle in theta:
+    widest, period = float((high - low).max(initial=0.0)), gauge.lifts.period
+    for angle, stands in zip(theta, _at(guess, theta), strict=True):
         windows = []
-        for turn in (-TURN, 0.0, TURN):
-            first, last = np.searchsorted(low, [angle + turn - widest, angle + turn])
-            windows.append(first + np.flatnonzero(high[first:last] >= angle + turn))
+        for beside in (-period, 0.0, period):
+            first, last = np.searchsorted(low, [angle + beside - widest, angle + beside])
+            windows.append(first + np.flatnonzero(high[first:last] >= angle + beside))
         own = np.unique(np.concatenate(windows))
-        own = own[_may_touch(gauge, guide, corners[own], float(angle), _at(guess, angle))]
+        own = own[_may_touch(gauge, guide, corners[own], float(angle), stands)]
         kept.append(own)
         at.append(np.full(len(own), angle))
     chosen, angles = np.concatenate(kept), np.concatenate(at)
@@ -381,7 +528,8 @@ def _placed(drum: Drum, gauge: Gauge, guide: Guide, guess: Array, theta: Array) 
 
 def _at(guess: Array, angle: Array | float) -> Array:
     """Guess at an angle, rad."""
-    return np.asarray(np.interp(angle, _looks(), guess, period=TURN))
+    turns = len(guess) // LOOKS
+    return np.asarray(np.interp(angle, _looks(turns), guess, period=TURN * turns))
 
 
 def _aside_of(guide: Guide, guess: Array) -> float:
@@ -390,25 +538,34 @@ def _aside_of(guide: Guide, guess: Array) -> float:
     return float(np.abs(guide.axis(guess, still, still).y).max())
 
 
-def _metal(drum: Drum, gauge: Gauge, guide: Guide, guess: Array) -> Indices:
-    """Numbers of the facets that lie on the metal's side of the roller's axis, along its length."""
+def _metal(drum: Drum, gauge: Gauge, guide: Guide, guess: Array) -> tuple[Indices, Indices]:
+    """Facets on the metal's side of the roller's axis, along its length: their numbers, and those of the turn, (t,).
+
+    Of several turns a facet is of each that comes near it.
+    """
     within = np.flatnonzero(drum.r.max(axis=1) >= gauge.inner)
-    phi, r, z = drum.phi[within].ravel(), drum.r[within].ravel(), drum.facets[within][..., 2].ravel()
-    theta = phi
+    turns = gauge.lifts.turns
+    own, turn = np.tile(within, turns), np.repeat(np.arange(turns), len(within))
+    phi, r, z = drum.phi[own] + TURN * turn[:, None], drum.r[own], drum.facets[own][..., 2]
+    theta = phi.ravel()
     for _ in range(ROUNDS):
         position = _at(guess, theta)
         axis = guide.axis(position, np.zeros_like(position), np.zeros_like(position))
-        theta = phi - np.arcsin(np.clip(axis.y / np.maximum(r, 1e-300), -1.0, 1.0))
-    away = (gauge.side * (axis.z - z) > 0.0).reshape(-1, 3)
+        theta = phi.ravel() - np.arcsin(np.clip(axis.y / np.maximum(r.ravel(), 1e-300), -1.0, 1.0))
+    above = (axis.z - z.ravel()).reshape(-1, 3)
+    away = gauge.side * above > 0.0
     across = away.any(axis=1) & ~away.all(axis=1)
     if across.any():
-        place = drum.facets[within[across][0]].mean(axis=0)
+        place = drum.facets[own[across][0]].mean(axis=0)
         angle = degrees(math.atan2(place[1], place[0]) % TURN)
         raise UnknownError(
             f"metal stands in the roller's way at about {angle:.6g} degrees, {np.hypot(*place[:2]):.6g} mm out",
             "give from and to within the flanks, or a smaller roller",
         )
-    return within[~away.any(axis=1)]
+    there = ~away.any(axis=1)
+    if turns > 1:
+        there &= np.abs(above).min(axis=1) <= FAR * gauge.largest
+    return own[there], turn[there]
 
 
 def _may_touch(gauge: Gauge, guide: Guide, corners: Array, angle: float, guess: Array) -> Mask:
@@ -435,6 +592,6 @@ def _may_touch(gauge: Gauge, guide: Guide, corners: Array, angle: float, guess: 
 
 def _leaning(follower: DrumFollower, beside: float, side: Side, position: Array) -> Array:
     """Pressure angles (n,), rad, about, at the roller's inner end, by the differences of positions at equal steps."""
-    slope = (np.roll(position, -SPREAD) - np.roll(position, SPREAD)) * (len(position) / (2.0 * SPREAD * TURN))
+    slope = (np.roll(position, -SPREAD) - np.roll(position, SPREAD)) * (STEPS / (2.0 * SPREAD * TURN))
     rows = Rates(*(Jet(row[None]) for row in (position, slope, np.zeros_like(slope))))
     return np.asarray(pressure_jet(follower, rows, follower.inner, On(side, beside=beside)).c[0])

@@ -39,6 +39,8 @@ SAME = 1e-7  # mm: crossings of a line nearer than this are one, on an edge betw
 WIDE = 1.0  # rad, of a triangle that is looked at from all angles
 BENT = math.radians(20.0)  # a sharper edge is an edge of the part, and none between two facets of a face
 MOST_BENT = 0.999  # of the edges between facets stand off no farther than is told: single ones do where a face ends
+MOST_CROSSED = 0.995  # of them where a groove crosses itself
+FACING = 0.9  # of a normal along the radius: of a facet that may be of the blank
 UPRIGHT = 0.5  # of a normal along the radius: of a facet that may be of a flank
 
 
@@ -77,7 +79,7 @@ class Drum:
     radius   of the blank
     length   greatest height
     below    height of the lower face in the file
-    sag      how far facets stand off the surface between them, by the bends at their edges: an estimate
+    bends    how far facets stand off the surface between them, by the bend at each of their edges, (k,): an estimate
     rounding by which a coordinate may be off by the file's numbers
     levels   heights of level faces that are no facets, with the radii between which they lie and their sense, (k, 4)
     floors   radii of floors that are no facets, each with the heights between which it lies, (k, 3)
@@ -90,13 +92,23 @@ class Drum:
     radius: float
     length: float
     below: float
-    sag: float
+    bends: Array
     rounding: float
     levels: Array
     floors: Array
     bore: float | None = None
     keyed: bool = False
     remarks: tuple[str, ...] = ()
+
+    @cached_property
+    def sag(self) -> float:
+        """How far facets stand off the surface between them, mm."""
+        return _most(self.bends, MOST_BENT)
+
+    @cached_property
+    def crossed_sag(self) -> float:
+        """The same of a groove that crosses itself: at its corners two flanks may bend as little as two facets do."""
+        return _most(self.bends, MOST_CROSSED)
 
     @cached_property
     def phi(self) -> Array:
@@ -117,6 +129,14 @@ class Drum:
         turned = np.stack([start[:, 0] * last[:, 1] - start[:, 1] * last[:, 0] for start, last in sides])
         about = (turned > 0.0).all(axis=0) | (turned < 0.0).all(axis=0)
         return np.where(about, 0.0, np.minimum.reduce([least_radius(*side) for side in sides]))
+
+    @cached_property
+    def rim(self) -> float:
+        """Radius, mm, within which no line along the axis lies beneath a facet of the blank, but in the metal."""
+        out = np.einsum("nk,nk->n", self.normals[:, :2], self.facets[..., :2].mean(axis=1))
+        length = np.linalg.norm(self.normals, axis=1) * np.hypot(*self.facets[..., :2].mean(axis=1).T)
+        own = (self.r.min(axis=1) >= (1.0 - ROUND) * self.radius) & (out > FACING * length)
+        return float(self.least[own].min(initial=self.radius))
 
     @cached_property
     def normals(self) -> Array:
@@ -241,7 +261,7 @@ def read_drum(path: Path, placed: Placed, units: float | None = None) -> Drum:
         radius,
         float(points[:, 2].max()),
         low,
-        _sag(points, corners, radius),
+        _bends(points, corners, radius),
         read.rounding,
         np.empty((0, 4)),
         np.empty((0, 3)),
@@ -313,8 +333,13 @@ def _bore(points: Array, corners: Indices) -> tuple[float | None, bool]:
     return math.sqrt(0.5 * float(area) / math.pi), False
 
 
-def _sag(points: Array, corners: Indices, radius: float) -> float:
-    """How far facets of flanks stand off a surface through their corners, mm: a width times its turn, over eight."""
+def _most(bends: Array, share: float) -> float:
+    """Greatest of a share of values (k,); 0 without any."""
+    return float(np.quantile(bends, share)) if len(bends) else 0.0
+
+
+def _bends(points: Array, corners: Indices, radius: float) -> Array:
+    """How far facets of flanks stand off a surface through their corners, mm, (k,): a width times its turn, over 8."""
     facets = points[corners]
     normal = np.cross(facets[:, 1] - facets[:, 0], facets[:, 2] - facets[:, 0])
     area = np.linalg.norm(normal, axis=1)
@@ -334,8 +359,7 @@ def _sag(points: Array, corners: Indices, radius: float) -> float:
     turned = 2.0 * np.arcsin(np.minimum(0.5 * np.linalg.norm(normal[facet[one]] - normal[facet[other]], axis=1), 1.0))
     length = np.linalg.norm(points[a[one]] - points[b[one]], axis=1)
     width = (area[facet[one]] + area[facet[other]]) / np.maximum(length, 1e-300)
-    off = (turned * width / 16.0)[(turned < BENT) & (length > 0.0)]
-    return float(np.quantile(off, MOST_BENT)) if len(off) else 0.0
+    return np.asarray((turned * width / 16.0)[(turned < BENT) & (length > 0.0)])
 
 
 def _of_shell(shell: Shell, placed: Placed) -> Drum:
@@ -378,7 +402,7 @@ def _of_shell(shell: Shell, placed: Placed) -> Drum:
         radius,
         length,
         least,
-        FINE,
+        np.array([FINE]),
         0.0,
         np.array([(z - least, low, high, up) for z, low, high, up in levels]).reshape(-1, 4),
         np.array([(r, low - least, high - least) for r, low, high in floors if r < radius]).reshape(-1, 3),

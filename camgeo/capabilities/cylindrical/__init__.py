@@ -9,4 +9,5 @@ LABEL = Label(
     },
     slips=dict.fromkeys(("barrel", "drum"), "cylindrical"),
     kin=("cylindrical",),
+    names={"FollowedDrum": "followed"},
 )

@@ -11,6 +11,7 @@ import numpy as np
 from camgeo.common.terminal import escaped
 from camgeo.motions.recognised import MOST_LEFT, STROKES_BEGIN, Recognised
 from kin.follower.recognised import dwells_of, recognised
+from kin.follower.unknown import stretches
 from kin.numeric.angles import TURN
 from kin.numeric.feet import equal_steps
 from kin.numeric.records import dataclass, replace
@@ -30,6 +31,7 @@ if TYPE_CHECKING:
 Flank = Literal["lower", "upper", "middle"]
 
 SPREAD = 3  # steps to both sides, over which a velocity is taken
+LONGER = 1.15  # times the longest gap, or the width, is a shoe whose length is not given
 ROUND = 0.25  # of the reading, by which round numbers may move the motion
 
 
@@ -83,7 +85,7 @@ class FollowedDrum:
 
     `flank` is that on which a roller in a groove is held; `reading`, mm, is within how much a dwell rests and a recipe
     keeps to the motion; `turn`, degrees, is that of the file; `unjudged` says why no page is made, and is empty where
-    one is.
+    one is. `shoe` is the length of a shoe, mm, 0 where the call does not say it, and None for a roller.
     """
 
     path: Path
@@ -95,9 +97,15 @@ class FollowedDrum:
     turn: float = 0.0
     units: Units | None = None
     unjudged: str = ""
+    shoe: float | None = None
 
     @property
-    def unit(self) -> Unit:
+    def unit(self) -> Literal["mm", "rad"]:
+        """Unit of the motion: mm on a carriage, rad on an arm."""
+        return "mm" if self.run.follower.arm is None else "rad"
+
+    @property
+    def told(self) -> Unit:
         """Unit of positions as they are shown."""
         return self.run.follower.unit
 
@@ -122,9 +130,42 @@ class FollowedDrum:
         return run.lower if self.flank == "lower" else run.upper
 
     @property
+    def turns(self) -> int:
+        """Turns of the drum after which the motion repeats."""
+        return self.run.turns
+
+    @property
     def theta(self) -> Array:
-        """Shaft angles (n,), rad."""
-        return equal_steps(len(self.position))
+        """Shaft angles (n,), rad, over all turns."""
+        return equal_steps(len(self.position)) * self.turns
+
+    @property
+    def bridged(self) -> list[tuple[float, float]]:
+        """Stretches of shaft angles, (begin, end), rad, in which no flank holds the pin: positions are on a cubic."""
+        lower, upper = self.run.touches
+        free = stretches(equal_steps(len(lower)), ~(lower | upper))
+        return [(begin * self.turns, end * self.turns) for begin, end in free]
+
+    @property
+    def shoe_length(self) -> float:
+        """Length of the recipe's shoe, mm: that of the call, or one that is longer than any gap and than it is wide."""
+        return self.shoe or math.ceil(LONGER * max(self.run.gap, 2.0 * self.run.follower.radius))
+
+    @property
+    def lift(self) -> float:
+        """Greatest position less the least, mm or rad."""
+        return float(np.ptp(self.position))
+
+    @property
+    def velocity(self) -> Array:
+        """Velocity (n,), mm or rad by radian of the shaft, as the difference over three steps to both sides."""
+        steps = np.roll(self.position, -SPREAD) - np.roll(self.position, SPREAD)
+        return np.asarray(steps * (len(self.position) / (2.0 * SPREAD * TURN * self.turns)))
+
+    @property
+    def pressure_angle(self) -> Array:
+        """Greatest pressure angle (n,), rad, about, at the roller's inner end."""
+        return self.run.lean
 
     @property
     def play(self) -> Array | None:
@@ -146,14 +187,16 @@ class FollowedDrum:
 
     @cached_property
     def rests(self) -> list[MeasuredDwell]:
-        """Dwells in the order of the turn."""
-        return dwells_of(self.position, self.within, self.unit)
+        """Dwells in the order of the motion; over several turns they are as many times as long at least."""
+        found = dwells_of(self.position, self.within, self.told)
+        return [rest._replace(begin=rest.begin * self.turns, end=rest.end * self.turns) for rest in found]
 
     @cached_property
     def programme(self) -> Programme | None:
-        """The nearest programme of dwells and strokes; None of a roller that does not move."""
-        motion = self._motion
-        return recognised(motion, self.within, self.unit) if np.ptp(self.position) > 2.0 * self.within else None
+        """The nearest programme of dwells and strokes; None of a roller that does not move, and of several turns."""
+        if self.turns > 1 or not np.ptp(self.position) > 2.0 * self.within:
+            return None
+        return recognised(self._motion, self.within, self.told)
 
     @property
     def _motion(self) -> DrumMotion:
@@ -163,6 +206,8 @@ class FollowedDrum:
     def segments(self) -> Segments:
         """The motion as segments of a recipe, as round as the file's facets let them be."""
         least = float(self.position.min())
+        if self.turns > 1:
+            return Segments(None, [], least, "laws are sought over one turn alone")
         if self.programme is None:
             return Segments(None, [], least, "there are no strokes between dwells or turning points")
         programme, error, most = self.programme, self.rounding, MOST_LEFT * self.within
@@ -170,8 +215,8 @@ class FollowedDrum:
         angles, levels = programme.uncertainty
         open_ = np.maximum(angles, error * programme.hidden.boundaries), np.maximum(levels, error)
         near = min(programme.greatest + error, most)
-        rough = Recognised(self._motion, replace(programme, uncertainty=open_), near, self.scale, self.unit)
-        known = Recognised(self._motion, programme, most, self.scale, self.unit)
+        rough = Recognised(self._motion, replace(programme, uncertainty=open_), near, self.scale, self.told)
+        known = Recognised(self._motion, programme, most, self.scale, self.told)
         rows, why = rough.segments()
         if rows is None:
             rows, why = known.segments()
@@ -182,7 +227,7 @@ class FollowedDrum:
         if rows is None:
             return Segments(None, [], least, why)
         lines = known.lines()
-        lines.append(f"the programme is within {self.scale * self.programme.greatest:.2g} {self.unit} of the motion")
+        lines.append(f"the programme is within {self.scale * self.programme.greatest:.2g} {self.told} of the motion")
         return Segments(rows, lines, known.zero)
 
     def _at(self, place: int) -> float:
@@ -205,6 +250,9 @@ class FollowedDrum:
             "bottom": "on an end face towards the bottom",
         }[kind]
         bears = f"bearing from {follower.inner:.6g} to {follower.outer:.6g} mm"
+        if self.shoe is not None:
+            over = f" over {self.turns} turns" if self.turns > 1 else ""
+            return f"shoe {2.0 * follower.radius:.6g} mm wide, {bears}, {track}{over}"
         return f"roller of radius {follower.radius:.6g} mm{cone}{lead}, {bears}, {track}"
 
     def document(self) -> dict[str, Any]:
@@ -216,7 +264,7 @@ class FollowedDrum:
         return {
             "file": self.path.name,
             "follower": self.words,
-            "unit": self.unit,
+            "unit": self.told,
             "drum": run.kind,
             "radius": self.drum.radius,
             "floor": run.floor,
@@ -224,6 +272,9 @@ class FollowedDrum:
             "to": run.follower.outer,
             "flank": self.flank if run.kind == "groove" else None,
             "distance": run.distance,
+            "turns": self.turns,
+            "gap": run.gap,
+            "bridged": [{"start_deg": math.degrees(a), "end_deg": math.degrees(b)} for a, b in self.bridged],
             "lift": scale * float(position[high] - position[low]),
             "least": {"position": scale * float(position[low]), "at_deg": self._at(low)},
             "greatest": {"position": scale * float(position[high]), "at_deg": self._at(high)},
@@ -235,7 +286,7 @@ class FollowedDrum:
                 "greatest": scale * float(play.max()),
                 "greatest_at_deg": self._at(int(play.argmax())),
             },
-            "facets": self.drum.sag,
+            "facets": self.run.sag,
             "error": scale * run.error,
             "pressure_angle": {"value": math.degrees(abs(float(run.lean[steep]))), "at_deg": self._at(steep)},
             "dwells": [
@@ -261,6 +312,8 @@ class FollowedDrum:
         if self.run.error > self.within:
             needed = f"{self.lever * self.run.error:.2g}"
             told.append(f"facets stand off by more than the reading: give a finer file, or reading {needed}")
+        if self.shoe == 0.0:
+            told.append(f"a recipe has a shoe {self.shoe_length:.6g} mm long: give --length with that of yours")
         if self.drum.keyed:
             told.append("the bore is no circle: name its form in part, the recipe has a round one")
         if self.run.kind == "groove" and self.flank != "lower":
@@ -269,7 +322,7 @@ class FollowedDrum:
 
     def summary(self) -> str:
         """Text for a terminal."""
-        told, unit = self.document(), self.unit
+        told, unit = self.document(), self.told
         least, most, play = told["least"], told["greatest"], told["play"]
         rows = [f"{escaped(told['file'])}: {told['follower']}"]
         rows.append(
@@ -289,10 +342,18 @@ class FollowedDrum:
                 f"to {play['greatest']:.4g} at {play['greatest_at_deg']:.6g}"
             )
         for dwell in told["dwells"]:
-            end = (dwell["start_deg"] + dwell["length_deg"]) % 360.0
+            end = (dwell["start_deg"] + dwell["length_deg"]) % (360.0 * self.turns)
             rows.append(
                 f"  dwell at {dwell['position']:.6g} {unit} from {dwell['start_deg']:.1f} to {end:.1f} degrees, "
                 f"flat within {dwell['flatness']:.2g} {unit}"
+            )
+        if told["gap"]:
+            rows.append(f"  a wall is gone over about {told['gap']:.4g} mm at most, where tracks cross")
+        if told["bridged"]:
+            longest = max(part["end_deg"] - part["start_deg"] for part in told["bridged"])
+            rows.append(
+                f"  no wall holds the shoe in {len(told['bridged'])} stretches of up to {longest:.2g} degrees: "
+                f"there its way is a cubic"
             )
         angle = told["pressure_angle"]
         rows.append(f"  pressure angle up to {angle['value']:.2f} degrees at {angle['at_deg']:.1f}, at the inner end")
@@ -312,12 +373,11 @@ class FollowedDrum:
 
         The velocity is that over three steps to both sides.
         """
-        n, scale, unit = len(self.position), self.scale, self.unit
-        steps = np.roll(self.position, -SPREAD) - np.roll(self.position, SPREAD)
+        scale, unit = self.scale, self.told
         columns = {
             "shaft_deg": np.degrees(self.theta),
             f"position_{unit}": scale * self.position,
-            f"velocity_{unit}_per_rad": scale * steps * (n / (2.0 * SPREAD * TURN)),
+            f"velocity_{unit}_per_rad": scale * self.velocity,
             "pressure_angle_deg": np.degrees(self.run.lean),
         }
         for name, row in (("lower", self.run.lower), ("upper", self.run.upper)):
@@ -336,5 +396,5 @@ class FollowedDrum:
             return None
         lift = self.scale * (self.position - float(self.position.min()))
         rows = zip(np.degrees(self.theta).tolist(), (np.round(lift, 9) + 0.0).tolist(), strict=True)
-        end = [f"360,{lift[0] + 0.0:.9f}\n"]
+        end = [f"{360 * self.turns},{lift[0] + 0.0:.9f}\n"]
         return "".join(["angle,lift\n", *(f"{angle:.12g},{value:.9f}\n" for angle, value in rows), *end])

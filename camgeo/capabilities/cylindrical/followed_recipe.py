@@ -27,6 +27,10 @@ class Drawn(FollowedDrum):
         """Text of a recipe of a drum with this motion: its programme, or lifts that are in the file `table`."""
         return _recipe_of(self, table)
 
+    def told_recipe(self, table: str) -> tuple[str, list[str]]:
+        """Text of `recipe`; the summary tells what it has."""
+        return self.recipe(table), []
+
     def page(self) -> str:
         """The page of the recipe, with the verdict on the file.
 
@@ -85,7 +89,7 @@ def _flow(value: Value) -> str:
 
 def _unsure(followed: FollowedDrum) -> float:
     """By how much a length of the drum may be off, mm: its facets lie so near it."""
-    return max(followed.drum.sag, FINE)
+    return max(followed.run.sag, FINE)
 
 
 def _ends(followed: FollowedDrum) -> tuple[float, float]:
@@ -108,7 +112,10 @@ def _cam(followed: FollowedDrum, zero: float) -> dict[str, str]:
     drum, run, follower, unsure = followed.drum, followed.run, followed.run.follower, _unsure(followed)
     near, (base, _) = followed.lever * followed.rounding, _ends(followed)
     radius, depth = roundest(drum.radius, unsure), roundest(drum.radius, unsure) - roundest(run.floor, unsure)
-    roller = [f"radius: {follower.radius:.9g}", f"from: {roundest(follower.inner, unsure):.9g}"]
+    roller = [f"radius: {follower.radius:.9g}"]
+    if followed.shoe is not None:
+        roller = ["kind: shoe", f"width: {2.0 * follower.radius:.9g}", f"length: {followed.shoe_length:.9g}"]
+    roller.append(f"from: {roundest(follower.inner, unsure):.9g}")
     if drum.radius - follower.outer > unsure:
         roller.append(f"to: {follower.outer:.9g}")
     if follower.offset:
@@ -131,6 +138,7 @@ def _cam(followed: FollowedDrum, zero: float) -> dict[str, str]:
         track = f"{{rib: {{distance: {roundest(run.distance or 0.0, near):.9g}, depth: {depth:.9g}}}}}"
     return {
         "radius": f"{radius:.9g}",
+        **({"turns": str(followed.turns)} if followed.turns > 1 else {}),
         "track": track,
         "follower": f"{{{', '.join(roller)}}}",
         "pitch_height": f"{roundest(height - base, near):.9g}",

@@ -29,6 +29,7 @@ if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
 
     from camgeo.capabilities.cylindrical.design import DrumDesign
+    from camgeo.capabilities.cylindrical.drum_recipe import DrumRecipe
     from camgeo.common.clock import Clock
     from camgeo.output.extension import FileCall
     from kin.cylindrical.intent import DrumIntent
@@ -44,8 +45,8 @@ WORDS = {
     "a": "tilted about x",
     "b": "tilted about y",
 }
-OF_DISCS = ("probe_radius", "probe_face", "axes_error", "spans", "out")
-MOST_ERROR = 1e3  # mm
+OF_DISCS = ("probe_face", "axes_error", "spans")
+MOST_LENGTH = 1e3  # mm
 NO_RING = "it takes points all round the turn at one radius, 36 or more without a gap of 20 degrees"
 MOST_NAMED = 5  # outliers
 NEAR = 1.0  # mm, between the radii of two rings that tell a play
@@ -53,16 +54,34 @@ NEAR = 1.0  # mm, between the radii of two rings that tell a play
 
 @dataclass(frozen=True)
 class _Options:
-    """How points are placed, letters of UNKNOWNS; and the expanded uncertainty (k = 2) of one, mm, None for none."""
+    """How points are placed, what they are of, and what is written of them.
+
+    unknowns  letters of UNKNOWNS
+    error     expanded uncertainty (k = 2) of a point, mm, None for none
+    ball      radius of the probe's ball whose centres they are, mm; 0 for points of the metal
+    out       folder of the page, the drawing and the table of points, None for none
+    """
 
     unknowns: str
     error: float | None
+    ball: float
+    out: str | None
+
+
+def demand_one_turn(recipe: DrumRecipe, call: FileCall) -> None:
+    """Raise CallError for points of a drum whose motion takes several turns."""
+    if recipe.turns > 1:
+        names = ", ".join(escaped(str(path)) for path in call.paths)
+        raise CallError(
+            f"{names}: points of a drum of several turns are not judged; give a solid of it, as a scan in STL"
+        )
 
 
 def judge(design: DrumDesign, call: FileCall, clock: Clock) -> Results:
     """Checks and the section `made` of a report on points of a drum's flanks.
 
-    Raises CallError for files and options that cannot be judged.
+    Raises CallError for files and options that cannot be judged, SurroundingsError where the folder of the call cannot
+    be written.
     """
     recipe, options = design.recipe, _options(design, call.options)
     names = ", ".join(escaped(str(path)) for path in call.paths)
@@ -87,12 +106,18 @@ def judge(design: DrumDesign, call: FileCall, clock: Clock) -> Results:
             raise CallError(f"{names}: this drum has no {name} flank")
     try:
         with clock.stage("points"):
-            made = made_drum(drum, np.concatenate(places), flank, options.unknowns)
+            made = made_drum(drum, np.concatenate(places), flank, options.unknowns, options.ball)
     except (UnlikeError, UnsettledError) as error:
         raise CallError(f"{names}: {error}") from error
     checks, verdicts = _checks(design, made, options)
     section = _section(design, drum, made, options, where)
-    return Results({"made": {"files": [path.name for path in call.paths], "verdicts": verdicts, **section}}, checks)
+    report = {"files": [path.name for path in call.paths], "verdicts": verdicts, **section}
+    if options.out is not None:
+        from camgeo.capabilities.cylindrical.made_folder import write_drum  # most calls write nothing
+
+        with clock.stage("write"):
+            report["written"] = write_drum(recipe, made, report, where, options.out)
+    return Results({"made": report}, checks)
 
 
 def _sides(drum: DrumIntent) -> list[int]:
@@ -108,17 +133,28 @@ def _options(design: DrumDesign, given: Mapping[str, object]) -> _Options:
     align = str(given.get("align", "none"))
     if align not in ALIGN:
         faults.append(f"--align: one of {', '.join(ALIGN)}, not {short_repr(align)}")
-    error = None
-    if "probe_error" in given:
-        try:
-            error = read_quantity(str(given["probe_error"]), design.recipe.units) * design.recipe.mm
-        except Complaint:
-            error = math.nan
-        if not 0.0 <= error <= MOST_ERROR:
-            faults.append(f"--probe-error: a length such as 0.002 is expected, not {short_repr(given['probe_error'])}")
+    error, ball = (_length(design, name, given, faults) for name in ("probe_error", "probe_radius"))
+    out = given.get("out")
+    if out is not None and not str(out):
+        faults.append("--out: an empty name")
     if faults:
         raise CallError(*faults)
-    return _Options(ALIGN[align], error)
+    return _Options(ALIGN[align], error, ball or 0.0, None if out is None else str(out))
+
+
+def _length(design: DrumDesign, name: str, given: Mapping[str, object], faults: list[str]) -> float | None:
+    """Length of an option, mm; None where it is not given, and one more of `faults` for what is no length."""
+    if name not in given:
+        return None
+    try:
+        value = read_quantity(str(given[name]), design.recipe.units) * design.recipe.mm
+    except Complaint:
+        value = math.nan
+    if 0.0 <= value <= MOST_LENGTH:
+        return value
+    told = f"a length such as 0.002 is expected, not {short_repr(given[name])}"
+    faults.append(f"--{name.replace('_', '-')}: {told}")
+    return None
 
 
 # --- checks -----------------------------------------------------------------------------------------------------------

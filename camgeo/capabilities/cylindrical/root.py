@@ -50,8 +50,9 @@ def _library() -> Library:
 
 
 def _points(recipe: DrumRecipe, call: FileCall) -> dict[str, Any]:
-    from camgeo.capabilities.cylindrical.made_points import judge
+    from camgeo.capabilities.cylindrical.made_points import demand_one_turn, judge
 
+    demand_one_turn(recipe, call)
     return _run().claimed(recipe, lambda design, clock: judge(design, call, clock))
 
 

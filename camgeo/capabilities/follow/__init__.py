@@ -5,5 +5,5 @@ from camgeo.registry.label import Label
 LABEL = Label(
     rank=30,
     commands={"follow": "The motion that a drawing or a solid gives a follower; a table, a recipe and a page of it."},
-    names={"Followed": "library", "Rest": "library", "follow": "library"},
+    names={"Followed": "followed", "Rest": "followed", "follow": "library"},
 )

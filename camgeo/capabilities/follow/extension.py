@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any, Protocol
+from typing import TYPE_CHECKING, Any, Literal, Protocol
 
 from camgeo.registry.slot import EMPTY, NO_CHECK, Slot
 from kin.numeric.records import dataclass
@@ -11,9 +11,21 @@ if TYPE_CHECKING:
     import argparse
     from collections.abc import Callable, Mapping
 
+    from kin.numeric.arrays import Array
+
 
 class FollowedOver(Protocol):
-    """A motion over another input than a turn, as the command prints and writes it."""
+    """The motion that a file gives a follower, as the command prints and writes it."""
+
+    @property
+    def unit(self) -> Literal["mm", "rad"]:
+        """Unit of the motion: mm along a line, rad of an arm."""
+        ...
+
+    @property
+    def position(self) -> Array:
+        """Positions of the follower (n,), mm or rad, at equal steps of the input."""
+        ...
 
     def summary(self) -> str:
         """Text for a terminal."""
@@ -31,6 +43,10 @@ class FollowedOver(Protocol):
         """Text of a recipe of a cam with this motion, whose lifts are in the file `table`; CallError where none is."""
         ...
 
+    def told_recipe(self, table: str) -> tuple[str, list[str]]:
+        """Text of the recipe that the command writes, and lines on what it has that the summary does not tell."""
+        ...
+
     def lifts(self) -> str | None:
         """Lifts over the input as CSV text that the recipe reads; None where it needs none."""
         ...
@@ -44,10 +60,11 @@ class FollowedOver(Protocol):
 class OtherInputs:
     """Answers of a capability whose cams are no discs.
 
-    option         attribute of the arguments that is not None where its motion is asked for; empty: it has none
+    option         argument of `camgeo.follow` that asks for its motion; empty: it has none
     add_arguments  adds the options of its own to the parser of the command
-    alone          options that go with that one alone: their attributes, and what these are where they are not given
-    follow         the motion by the arguments of the command; raises CallError where there is none
+    alone          options that go with that one alone: their arguments, and what these are where they are not given
+    follow         the motion by all arguments of `camgeo.follow`, also those that are not given, in a namespace; raises
+                   CallError where there is none, TypeError for an argument of its own of a wrong type
     solids         remedy for a solid that is no disc; empty where no such solid is followed
     """
 

@@ -6,7 +6,7 @@ from __future__ import annotations
 import json
 import math
 from itertools import pairwise
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, Literal
 
 import numpy as np
 
@@ -68,7 +68,12 @@ class FollowedPlate:
         return self.guide.length if isinstance(self.guide, Arm) else 1.0
 
     @property
-    def unit(self) -> str:
+    def unit(self) -> Literal["mm", "rad"]:
+        """Unit of the motion: mm on a stem, rad on an arm."""
+        return "rad" if self.swings else "mm"
+
+    @property
+    def told(self) -> str:
         """Unit of positions as they are shown."""
         return "deg" if self.swings else "mm"
 
@@ -96,7 +101,7 @@ class FollowedPlate:
         return {
             "file": self.name,
             "follower": self.words,
-            "unit": self.unit,
+            "unit": self.told,
             "travel": [float(self.u[0]), float(self.u[-1])],
             "lift": float(self.shown[high] - self.shown[low]),
             "least": {"position": float(self.shown[low]), "at": float(self.u[low])},
@@ -106,7 +111,7 @@ class FollowedPlate:
 
     def summary(self) -> str:
         """Text for a terminal."""
-        told, unit = self.document(), self.unit
+        told, unit = self.document(), self.told
         rows = [f"{escaped(self.name)}: {self.words}, over a travel from {self.u[0]:.6g} to {self.u[-1]:.6g} mm"]
         rows.append(
             f"  lift {told['lift']:.6g} {unit}: from {told['least']['position']:.6g} at {told['least']['at']:.6g} mm "
@@ -119,14 +124,14 @@ class FollowedPlate:
         """Motion over the travel as CSV text; the velocity is by the travel, from differences."""
         velocity = np.gradient(self.shown, self.u)
         rows = np.column_stack([self.u, self.shown, velocity]) + 0.0
-        head = f"travel_mm,position_{self.unit},velocity_{self.unit}_per_mm"
+        head = f"travel_mm,position_{self.told},velocity_{self.told}_per_mm"
         return "\n".join([head, *(",".join(f"{value:.12g}" for value in row) for row in rows.tolist()), ""])
 
     def lifts(self) -> str:
         """Lifts over the travel as CSV text that a recipe reads, from the least position on."""
         rows = np.column_stack([self.u - self.u[0], np.round(self.shown - self.shown.min(), 9)]) + 0.0
         lines = (f"{at:.12g},{lift:.12g}" for at, lift in rows.tolist())
-        return "\n".join([f"travel_mm,lift_{self.unit}", *lines, ""])
+        return "\n".join([f"travel_mm,lift_{self.told}", *lines, ""])
 
     def recipe(self, table: str) -> str:
         """Text of a recipe of a plate with this motion, whose lifts are in the file `table`.
@@ -165,6 +170,10 @@ class FollowedPlate:
         ]
         return "\n".join(lines)
 
+    def told_recipe(self, table: str) -> tuple[str, list[str]]:
+        """Text of `recipe`; the summary tells what it has."""
+        return self.recipe(table), []
+
     def page(self) -> str:
         """Raise CallError: there is none."""
         raise CallError(NO_PAGE)
@@ -190,16 +199,16 @@ def _add_arguments(parser: argparse.ArgumentParser) -> None:
 
 def _follow(arguments: argparse.Namespace) -> FollowedPlate:
     """Motion of a roller, shoe or knife edge set down on a plate's outline; raises CallError where it touches none."""
-    from camgeo.common.arguments import path_of
+    from camgeo.common.arguments import number_of, path_of, tuple_of
 
     path = path_of("file", arguments.file)
-    span = arguments.linear
+    span = tuple_of("linear", arguments.linear)
+    arguments.lean = number_of("lean", arguments.lean)
     if len(span) != len(("from", "to")) or not span[0] < span[1]:
         raise CallError("linear takes two inputs in mm, the lesser first, such as --linear 0,120")
-    if arguments.page is not None:
-        raise CallError(NO_PAGE)
     of_discs = (arguments.flat, arguments.yoke, arguments.offset, arguments.track != "external", arguments.across)
-    if any(of_discs) or arguments.mirror or arguments.turn or arguments.body is not None:
+    of_discs = (*of_discs, arguments.mirror, arguments.turn, arguments.body is not None, arguments.width is not None)
+    if any(of_discs):
         raise CallError("a plate is followed by a roller, a shoe or a knife edge: leave the other options out")
     radius = arguments.shoe if arguments.shoe is not None else arguments.roller
     if radius is None or not radius >= 0.0:

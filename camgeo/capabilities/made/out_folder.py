@@ -13,17 +13,29 @@ import numpy as np
 
 from camgeo.capabilities.made.made_part import motion_uncertainty
 from camgeo.capabilities.made.part_points import label_of
-from camgeo.capabilities.made.section_text import NO_LIMIT, shaft_rows, table_rows
-from camgeo.common.errors import SurroundingsError
+from camgeo.capabilities.made.section_text import shaft_rows, table_rows
 from camgeo.files.markup import one_line
 from camgeo.files.table import write_table
 from camgeo.measures.units import UNIT_NAMES, report_unit
+from camgeo.report.measured_page import (
+    DOT,
+    INK,
+    METAL,
+    ZONE,
+    document,
+    findings,
+    heading,
+    pair,
+    plot,
+    word,
+    write_whole,
+)
 from kin.follower.recognised import COVERAGE
 from kin.numeric.feet import equal_steps
 from kin.numeric.records import replace
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Sequence
+    from collections.abc import Sequence
 
     from camgeo.capabilities.made.made_part import PartMade, SurfaceMade
     from camgeo.capabilities.made.options import PointOptions
@@ -33,17 +45,10 @@ if TYPE_CHECKING:
 
 LOOKS = 1440  # places at which a curve is drawn, round the contour or over the shaft angle
 SHARE = 0.12  # of the cam's greatest radius: how long the greatest deviation is drawn
-WIDE, HIGH, LEFT, FOOT, RIGHT = 860.0, 240.0, 70.0, 40.0, 26.0  # px of a plot, and of its margins
 MARKS = 30  # degrees of the shaft between two marks round the contour
 WITHIN, LEAST_WITHIN = 0.2, 0.45  # of the cam's size: how far marks stand within the contour; of the radius: at least
 LETTER = 0.035  # of the reach of the drawing: its letters
 MOST_DOTS = 4000  # of points in a plot: more hide one another
-INK, METAL, BAND, ZONE, DOT = "#1a1a1a", "#b3261e", "#f3c4bf", "#3b6ea5", "#8a8a8a"
-STYLE = (
-    "body{font:15px/1.5 system-ui,sans-serif;max-width:900px;margin:2em auto;padding:0 1em;color:#1a1a1a}"
-    "table{border-collapse:collapse}td,th{padding:.15em .8em .15em 0;text-align:left;vertical-align:top}"
-    "svg{max-width:100%;height:auto}h2{font-size:1.1em;margin:1.6em 0 .4em}"
-)
 
 
 def write_part(recipe: Recipe, result: PartMade, section: dict[str, Any], options: PointOptions) -> list[str]:
@@ -55,9 +60,9 @@ def write_part(recipe: Recipe, result: PartMade, section: dict[str, Any], option
     drawing = _drawing(recipe, result)
     page = _page(recipe, result, section, options, drawing)
     table, html, svg = (folder / f"{recipe.name}-made{suffix}" for suffix in (".csv", ".html", ".svg"))
-    _write_whole(table, lambda path: _write_points(recipe, result, path))
-    _write_whole(html, lambda path: path.write_bytes(page.encode()))
-    _write_whole(svg, lambda path: path.write_bytes(drawing.encode()))
+    write_whole(table, lambda path: _write_points(recipe, result, path))
+    write_whole(html, lambda path: path.write_bytes(page.encode()))
+    write_whole(svg, lambda path: path.write_bytes(drawing.encode()))
     return [str(html), str(svg), str(table)]
 
 
@@ -74,19 +79,8 @@ def write_shaft(recipe: ShaftOrder, result: ShaftMade, section: dict[str, Any], 
         pages.append((cam.name, f"{named.name}-made.html"))
     path = Path(options.out or "") / f"{recipe.name}-made.html"
     page = _shaft_page(recipe.name, section, pages)
-    _write_whole(path, lambda partial: partial.write_bytes(page.encode()))
+    write_whole(path, lambda partial: partial.write_bytes(page.encode()))
     return [str(path), *written]
-
-
-def _write_whole(path: Path, write: Callable[[Path], object]) -> None:
-    """Write a file under another name, then rename it; raises SurroundingsError where the file system refuses."""
-    partial = path.with_name(f".{path.name}.partial")
-    try:
-        path.parent.mkdir(parents=True, exist_ok=True)
-        write(partial)
-        partial.replace(path)
-    except OSError as error:
-        raise SurroundingsError(error.strerror or str(error), path.parent) from error
 
 
 # --- the table --------------------------------------------------------------------------------------------------------
@@ -133,9 +127,7 @@ def _drawing(recipe: Recipe, result: PartMade) -> str:
         moved = points + magnified * e[:, None] * normals
         for over, colour in ((True, METAL), (False, ZONE)):
             ticks = [
-                f"M{_pair(points[i])}L{_pair(moved[i])}"
-                for i in range(0, LOOKS, 4)
-                if bool(e[i] > 0.0) is over and e[i]
+                f"M{pair(points[i])}L{pair(moved[i])}" for i in range(0, LOOKS, 4) if bool(e[i] > 0.0) is over and e[i]
             ]
             parts.append(f'<path d="{"".join(ticks)}" stroke="{colour}" stroke-width="{thin:.5g}" fill="none"/>')
         parts.append(f'<path d="{_path(points)}Z" stroke="{INK}" stroke-width="{2 * thin:.5g}" fill="none"/>')
@@ -149,7 +141,7 @@ def _drawing(recipe: Recipe, result: PartMade) -> str:
         f'v{-0.01 * reach:.5g}v{0.02 * reach:.5g}" stroke="{INK}" stroke-width="{thin:.5g}" fill="none"/>'
     )
     words = f"{bar:.6g} {unit}; deviation magnified {magnified:.6g} times; angles of the shaft, degrees"
-    parts.append(_word(-0.95 * reach + long + 0.02 * reach, foot, words, LETTER * reach, "start"))
+    parts.append(word(-0.95 * reach + long + 0.02 * reach, foot, words, LETTER * reach, "start"))
     arm = 0.03 * reach
     cross = f"M{-arm:.5g},0h{2.0 * arm:.5g}M0,{-arm:.5g}v{2.0 * arm:.5g}"
     parts.append(f'<path d="{cross}" stroke="{INK}" stroke-width="{thin:.5g}"/>')
@@ -171,26 +163,15 @@ def _marks(surface: SurfaceMade, size: float, reach: float, sign: Array) -> list
         k = int(np.argmin(np.abs(np.mod(shaft - degree + 180.0, 360.0) - 180.0)))
         point, radius = points[k], float(np.hypot(*points[k]))
         inner = max(radius - WITHIN * size, LEAST_WITHIN * radius) / max(radius, 1e-9)
-        tick = f"M{_pair(point)}L{_pair(point * (1.0 + 2.0 * inner) / 3.0)}"
+        tick = f"M{pair(point)}L{pair(point * (1.0 + 2.0 * inner) / 3.0)}"
         marks.append(f'<path d="{tick}" stroke="{DOT}" stroke-width="{reach / 500.0:.5g}"/>')
         x, y = (point * inner).tolist()
-        marks.append(_word(x, y + 0.35 * LETTER * reach, f"{degree}", LETTER * reach, "middle"))
+        marks.append(word(x, y + 0.35 * LETTER * reach, f"{degree}", LETTER * reach, "middle"))
     return marks
 
 
-def _word(x: float, y: float, words: str, size: float, anchor: str) -> str:
-    """Words in SVG, the foot of their letters at a place, in units of the drawing."""
-    font = 'font-family="system-ui,sans-serif"'
-    place = f'x="{x:.5g}" y="{y:.5g}" font-size="{size:.5g}" text-anchor="{anchor}"'
-    return f'<text {place} {font} fill="{INK}">{words}</text>'
-
-
-def _pair(point: Array) -> str:
-    return f"{point[0]:.5g},{point[1]:.5g}"
-
-
 def _path(points: Array) -> str:
-    return "M" + "L".join(_pair(point) for point in points)
+    return "M" + "L".join(pair(point) for point in points)
 
 
 # --- the page ---------------------------------------------------------------------------------------------------------
@@ -199,7 +180,7 @@ def _path(points: Array) -> str:
 def _page(recipe: Recipe, result: PartMade, section: dict[str, Any], options: PointOptions, drawing: str) -> str:
     unit, mm = UNIT_NAMES[recipe.units], recipe.mm
     scale, moved = report_unit(recipe, result.motion_unit)
-    parts = [_heading(recipe.name, section), _findings(section, table_rows(section, everything=True))]
+    parts = [heading(recipe.name, section), findings(section, table_rows(section, everything=True))]
     parts.append(f"<h2>Deviation round the contour, magnified</h2>{drawing}")
     for surface in result.surfaces:
         name = f" of {one_line(surface.measured.intent.name)}" if surface.measured.intent.name else ""
@@ -208,38 +189,15 @@ def _page(recipe: Recipe, result: PartMade, section: dict[str, Any], options: Po
     limit = recipe.verify.motion_error
     zone = None if limit is None else math.degrees(limit) if moved == "deg" else limit / mm
     parts.append(f"<h2>Error of the motion less its constant offset, {moved}</h2>")
-    parts.append(_plot(np.degrees(errors.shaft), scale * errors.remaining, scale * uncertain, zone=zone))
+    parts.append(plot(np.degrees(errors.shaft), scale * errors.remaining, scale * uncertain, zone=zone))
     parts.append("<h2>What to take off</h2>" + _take_off(result, mm, unit))
-    return _document(recipe.name, "\n".join(parts))
+    return document(recipe.name, "\n".join(parts))
 
 
 def _shaft_page(name: str, section: dict[str, Any], pages: Sequence[tuple[str, str]]) -> str:
     links = "".join(f'<li><a href="{one_line(page)}">{one_line(title)}</a></li>' for title, page in pages)
-    findings = _heading(name, section) + _findings(section, shaft_rows(section, everything=False))
-    return _document(name, f"{findings}\n<h2>Each lobe</h2><ul>{links}</ul>")
-
-
-def _heading(name: str, section: dict[str, Any]) -> str:
-    """Name of the recipe and the files of points."""
-    return f"<h1>{one_line(name)}</h1><p>{one_line(', '.join(section['files']))}</p>"
-
-
-def _findings(section: dict[str, Any], rows: Sequence[tuple[str, str]]) -> str:
-    """Verdicts, a table of rows (label, value), and remarks."""
-    words = [f"{key}: {word}" for key, word in section["verdicts"].items()] or [NO_LIMIT]
-    verdicts = "".join(f"<p><b>{one_line(word)}</b></p>" for word in words)
-    cells = "".join(f"<tr><td>{one_line(label)}</td><td>{one_line(value)}</td></tr>" for label, value in rows)
-    remarks = "".join(f"<li>{one_line(text)}</li>" for text in section["remarks"])
-    return f"{verdicts}<table>{cells}</table><ul>{remarks}</ul>"
-
-
-def _document(name: str, body: str) -> str:
-    """Whole HTML page round a body, titled with the recipe's name."""
-    return (
-        '<!doctype html>\n<html lang="en"><meta charset="utf-8">'
-        "<meta http-equiv=\"Content-Security-Policy\" content=\"default-src 'none'; style-src 'unsafe-inline'\">"
-        f"<title>{one_line(name)}: as made</title><style>{STYLE}</style>\n<body>{body}</body></html>\n"
-    )
+    found = heading(name, section) + findings(section, shaft_rows(section, everything=False))
+    return document(name, f"{found}\n<h2>Each lobe</h2><ul>{links}</ul>")
 
 
 def _over_shaft(recipe: Recipe, surface: SurfaceMade) -> str:
@@ -247,66 +205,11 @@ def _over_shaft(recipe: Recipe, surface: SurfaceMade) -> str:
     gauge, mm, deviations = surface.gauge, recipe.mm, surface.measured.deviations
     shaft = np.mod(np.degrees(gauge.shaft_angle(t)), 360.0)
     order = np.argsort(shaft, kind="stable")
-    chosen = np.linspace(0, len(deviations.e) - 1, min(MOST_DOTS, len(deviations.e))).astype(np.intp)
-    dots = np.mod(np.degrees(gauge.shaft_angle(deviations.parameter[chosen])), 360.0), deviations.e[chosen] / mm
+    dots = np.mod(np.degrees(gauge.shaft_angle(deviations.parameter)), 360.0), deviations.e / mm
     zone = recipe.profile
     half = None if zone is None else 0.5 * zone / mm
     e, band = surface.fit.curve.rows(t)[0] / mm, COVERAGE * surface.fit.curve.standard_deviations(t) / mm
-    return _plot(shaft[order], e[order], band[order], dots=dots, zone=half)
-
-
-def _plot(
-    x: Array, y: Array, band: Array, *, dots: tuple[Array, Array] | None = None, zone: float | None = None
-) -> str:
-    """SVG of a curve over 360 degrees with its uncertainty as a band, points behind it, and lines at +- `zone`."""
-    reach = max(
-        float(np.abs(y).max() + band.max()),
-        0.0 if dots is None else float(np.abs(dots[1]).max()),
-        1.1 * (zone or 0.0),
-        1e-9,
-    )
-
-    # the turn is closed: from 0 on, and up to 360
-    ends = [np.interp([0.0], x, row, period=360.0) for row in (y, band)]
-    x, (y, band) = (
-        np.array([0.0, *x, 360.0]),
-        (np.concatenate([end, row, end]) for end, row in zip(ends, (y, band), strict=True)),
-    )
-
-    def across(degrees: Array) -> Array:
-        return LEFT + degrees * ((WIDE - LEFT - RIGHT) / 360.0)
-
-    def up(value: Array) -> Array:
-        middle: Array = 0.5 * (HIGH - FOOT) - value * (0.46 * (HIGH - FOOT) / reach)
-        return middle
-
-    def line(value: Array) -> str:
-        return "M" + "L".join(f"{a:.2f},{b:.2f}" for a, b in zip(across(x), up(value), strict=True))
-
-    # band, points, lines of the zone and of 0, the curve, and the scales
-    upper = [f"{a:.2f},{b:.2f}" for a, b in zip(across(x), up(y + band), strict=True)]
-    lower = [f"{a:.2f},{b:.2f}" for a, b in zip(across(x), up(y - band), strict=True)][::-1]
-    parts = [f'<path d="M{"L".join(upper + lower)}Z" fill="{BAND}"/>']
-    if dots is not None:
-        places = zip(across(dots[0]), up(dots[1]), strict=True)
-        ticks = "".join(f"M{a:.1f},{b:.1f}h.01" for a, b in places)
-        parts.append(f'<path d="{ticks}" stroke="{DOT}" stroke-width="2" stroke-linecap="round"/>')
-    for value, colour in ((zone, ZONE), (None if zone is None else -zone, ZONE), (0.0, INK)):
-        if value is not None:
-            height = float(up(np.array(value)))
-            dashes = ' stroke-dasharray="6 4"' if value else ""
-            parts.append(f'<path d="M{LEFT},{height:.2f}H{WIDE - RIGHT}" stroke="{colour}" stroke-width="1"{dashes}/>')
-            parts.append(
-                f'<text x="{LEFT - 6}" y="{height + 4:.2f}" text-anchor="end" font-size="12">{value:.3g}</text>'
-            )
-    parts.append(f'<path d="{line(y)}" stroke="{METAL}" stroke-width="1.6" fill="none"/>')
-    for degrees in range(0, 361, 60):
-        at = float(across(np.array(float(degrees))))
-        parts.append(f'<text x="{at:.1f}" y="{HIGH - 20.0}" text-anchor="middle" font-size="12">{degrees}</text>')
-    if zone is None:
-        top = float(up(np.array(reach)))
-        parts.append(f'<text x="{LEFT - 6}" y="{top + 10:.2f}" text-anchor="end" font-size="12">{reach:.3g}</text>')
-    return f'<svg viewBox="0 0 {WIDE} {HIGH}" role="img" font-family="system-ui,sans-serif">{"".join(parts)}</svg>'
+    return plot(shaft[order], e[order], band[order], dots=dots, zone=half)
 
 
 def _excesses(surface: SurfaceMade) -> list[tuple[float, float, float, float]]:

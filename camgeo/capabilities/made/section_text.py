@@ -5,10 +5,10 @@ from __future__ import annotations
 from typing import Any
 
 from camgeo.common.terminal import escaped
+from camgeo.report.measured_page import NO_LIMIT
 
 METAL = {"too much": "metal to grind off", "missing": "metal is missing"}
 OF_PROFILE = "by the profile"  # as the phase is by the motion: two measurands
-NO_LIMIT = "measured, no limit given"
 PER = {"error": "motion, error", "velocity": "  velocity", "acceleration": "  acceleration"}
 
 

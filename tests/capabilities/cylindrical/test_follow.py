@@ -91,6 +91,56 @@ def test_a_groove_gives_its_recipe_back(
     assert "ok" in capsys.readouterr().out
 
 
+@pytest.mark.costly("a solid is followed at all angles")
+def test_the_library_follows_a_drum(grooved: Path, follow: Callable[..., Any]) -> None:
+    """Its words are the command's; `bears_from` and `bears_to` stand for --from and --to."""
+    followed = camgeo.follow(grooved, drum="auto", roller=10, bears_from=38, bears_to=49)
+    assert isinstance(followed, camgeo.FollowedDrum)
+    assert followed.unit == "mm"
+    assert np.abs(followed.position - 20.0 - LIFT(followed.theta)).max() < followed.run.error
+    assert followed.lift == pytest.approx(40.0, abs=followed.run.error)
+    # over three steps to both sides: within h^2/6 of the third derivative, 40 (2 pi)^2/(2 pi/3)^3 at a cycloidal's ends
+    step = 3.0 * 2.0 * np.pi / 720
+    slope = (LIFT(THETA + 1e-5) - LIFT(THETA - 1e-5)) / 2e-5
+    most = step**2 / 6.0 * 40.0 * (2.0 * np.pi) ** 2 / (2.0 * np.pi / 3.0) ** 3 + followed.run.error / step
+    assert np.abs(followed.velocity - slope).max() < most
+    # tan a = S'/rho at the inner end
+    assert np.abs(np.tan(followed.pressure_angle)).max() == pytest.approx(slope.max() / 38.0, rel=2e-3)
+    assert [rest.level for rest in followed.rests] == pytest.approx([60.0, 20.0], abs=0.01)
+    assert followed.play is not None
+    assert followed.play.min() == pytest.approx(0.03, abs=followed.run.error)
+    told, recipe, rows = follow(grooved, "--drum", "auto", "--roller", "10", "--from", "38", "--to", "49")
+    assert rows["position_mm"] == pytest.approx(followed.position, rel=1e-11)  # of twelve digits
+    assert json.loads(json.dumps(followed.document())) == told
+    assert yaml.safe_load(followed.recipe("lift.csv")) == recipe
+    assert followed.lifts() is None
+
+
+@pytest.mark.parametrize(
+    ("words", "error", "told"),
+    [
+        ({"drum": "auto", "roler": 10}, TypeError, r"follow\(\) got an unexpected keyword argument 'roler'"),
+        ({"drum": "auto", "bears_from": "38", "roller": 10}, TypeError, "bears_from must be a number, not str"),
+        ({"drum": 1, "roller": 10}, TypeError, "drum must be a str, not int"),
+        ({"drum": "auto", "roller": 10, "taper": "x"}, TypeError, "taper must be a number, not str"),
+        ({"drum": "auto", "roller": 10, "turns": 1.5}, TypeError, "turns must be an int, not float"),
+        ({"drum": "drum", "roller": 10}, camgeo.CallError, "is one of auto, groove, rib, top, bottom, not 'drum'"),
+        ({"drum": "auto", "roller": 10, "axis": "w"}, camgeo.CallError, "axis of a drum is one of x, y, z, not 'w'"),
+        ({"drum": "auto", "roller": 10, "flat": True}, camgeo.CallError, "are not of drums"),
+        ({"drum": "auto", "roller": 10, "steps": 360}, camgeo.CallError, "steps are of discs: leave steps out"),
+        ({"drum": "auto"}, camgeo.CallError, "give --roller with its radius, or --width of a shoe"),
+        (
+            {"roller": 10, "bears_from": 38},
+            camgeo.CallError,
+            "bears_from goes with drum: give both, or leave bears_from",
+        ),
+    ],
+)
+def test_wrong_calls_of_the_library(grooved: Path, words: Any, error: type[Exception], told: str) -> None:
+    with pytest.raises(error, match=told):
+        camgeo.follow(grooved, **words)
+
+
 @pytest.mark.slow  # booleans of a whole groove
 def test_level_faces_of_another_kernel_have_triangles_along_the_rim(tmp_path: Path, follow: Callable[..., Any]) -> None:
     """A blank less a roller's way, by booleans: triangles of its ends have all their corners on the blank."""

@@ -1,25 +1,27 @@
 # needs: made
 """Points measured on the flanks of a drum, by `camgeo verify`.
 
-Holds: camgeo.capabilities.cylindrical.made_points, kin.cylindrical.measured_flanks, kin.cylindrical.inspected.
+Holds: camgeo.capabilities.cylindrical.made_points, camgeo.capabilities.cylindrical.made_folder,
+camgeo.report.measured_page, kin.cylindrical.measured_flanks, kin.cylindrical.inspected.
 """
 
 from __future__ import annotations
 
 import math
-from typing import TYPE_CHECKING, Any
+import re
+from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
 from capabilities.cylindrical.made_drums import GROOVE, RIB, TOP, changed
+from capabilities.cylindrical.positions import Lift
+from capabilities.cylindrical.wound_drums import SPIRAL
 
 import camgeo
 from camgeo.cli.main import main
 from kin.cylindrical.inspected import read_flank_points
 from kin.read.errors import ReadError
-
-if TYPE_CHECKING:
-    from pathlib import Path
 
 PLAY = changed(GROOVE, ("{depth: 12.5}", "{depth: 12.5, clearance: 0.03}"), ("[stl]", "[{csv: {as: flank, step: 1}}]"))
 ASKED = f"made: {{profile: 0.03}}\nverify: {{motion_error: 0.01}}\n{PLAY}"
@@ -238,6 +240,13 @@ def test_units_of_a_bare_heading(drum: Flanks, capsys: pytest.CaptureFixture[str
     assert "flank upper" in capsys.readouterr().out
 
 
+def test_several_turns_are_refused(drum: Flanks) -> None:
+    path = drum.folder / "spiral.yaml"
+    path.write_text(SPIRAL, encoding="utf-8")
+    with pytest.raises(camgeo.CallError, match="points of a drum of several turns are not judged; give a solid of it"):
+        camgeo.verify(path, drum.table)
+
+
 def test_options_of_discs_are_refused(drum: Flanks) -> None:
     with pytest.raises(camgeo.CallError, match="--spans: it is for points of discs"):
         drum.verified(drum.table, spans=30)
@@ -261,3 +270,121 @@ def test_columns_as_inspection_tables_have_them(tmp_path: Path) -> None:
     path.write_text("\n".join(["x,y,z,flank", *[f"{k},1,2,{'side' if k == 4 else 'lower'}" for k in range(20)]]))
     with pytest.raises(ReadError, match="line 6: a flank is lower or upper, not 'side'"):
         read_flank_points(path)
+
+
+# --- centres of a ball ------------------------------------------------------------------------------------------------
+
+LIFT = Lift(
+    [
+        ("rise", 40.0, 120.0, "cycloidal"),
+        ("dwell", 0.0, 60.0, ""),
+        ("return", 40.0, 120.0, "polynomial-345"),
+        ("dwell", 0.0, 60.0, ""),
+    ]
+)
+
+
+def centres(ball: float, off: float, rho: float = 44.0) -> list[str]:
+    """Rows of centres of a ball on both flanks, whose metal is `off` too much, by the line of contact of a cylinder.
+
+    At the place rho along the roller tan a = S'/rho, and the metal lies R from the roller's axis, ahead of it below and
+    behind it above; R is 10, and 10.03 above.
+    """
+    theta = np.radians(np.arange(0.0, 360.0, 2.0))
+    slope = (LIFT(theta + 1e-6) - LIFT(theta - 1e-6)) / 2e-6
+    sine, cosine = slope / np.hypot(slope, rho), rho / np.hypot(slope, rho)
+    rows = []
+    for side, name, radius in ((-1.0, "lower", 10.0), (1.0, "upper", 10.03)):
+        far = radius - ball - off
+        x, y, z = rho + 0.0 * theta, -side * far * sine, 20.0 + LIFT(theta) + side * far * cosine
+        places = np.stack([x * np.cos(theta) - y * np.sin(theta), x * np.sin(theta) + y * np.cos(theta), z], axis=1)
+        rows += [f"{','.join(f'{value:.9f}' for value in row)},{name}" for row in places.tolist()]
+    return ["x_mm,y_mm,z_mm,flank", *rows]
+
+
+@pytest.mark.costly("points of whole flanks are found from rollers at all angles, five times")
+def test_centres_of_a_ball(drum: Flanks) -> None:
+    """A ball of 3 mm touches metal that is 5 um too much; the points are 3.005 mm off without its radius."""
+    path = drum.folder / "ball.csv"
+    path.write_text("\n".join([*centres(3.0, 0.005), ""]), encoding="utf-8")
+    made = drum.verified(path, probe_radius=3, probe_error=0.001)["made"]
+    for flank in made["flanks"]:
+        assert [flank["least"], flank["most"]] == pytest.approx([0.005, 0.005], abs=2e-6)
+    assert set(made["verdicts"].values()) == {"ok"}
+    lower = next(ring for ring in made["rings"] if ring["flank"] == "lower")
+    steepest = math.atan(40.0 * 2.0 / math.radians(120.0) / 44.0)
+    assert lower["worst"] == pytest.approx(0.005 / math.cos(steepest), abs=1e-5)
+    with pytest.raises(camgeo.CallError, match=r"look 3\.005 mm too large all round: `--probe-radius` of the ball\?"):
+        drum.verified(path)
+    path.write_text("\n".join([*centres(0.0, 0.0), ""]), encoding="utf-8")
+    with pytest.raises(camgeo.CallError, match="look 3 mm too small all round: leave `--probe-radius` out"):
+        drum.verified(path, probe_radius=3)
+    with pytest.raises(camgeo.CallError, match="a ball of radius 12 mm does not go where a roller of 10 mm does"):
+        drum.verified(path, probe_radius=12)
+    with pytest.raises(camgeo.CallError, match=r"--probe-radius: a length such as 0\.002 is expected, not -1"):
+        drum.verified(path, probe_radius=-1)
+
+
+@pytest.mark.costly("points of whole flanks are found from rollers at all angles")
+def test_a_ball_on_the_flank_of_a_cone(tmp_path: Path) -> None:
+    """Places moved along their normals are those of a parallel surface."""
+    text = changed(
+        GROOVE,
+        ("from: 38", "from: 38, taper: 8, at: 44, arm: {length: 90, offset: 89.5, pivot: 46}"),
+        ("pitch_height: 20", "pitch_height: 33.5"),
+        ("[stl]", "[{csv: {as: flank, step: 2}}]"),
+        ("rise: 40", "rise: 16"),
+        ("return: 40", "return: 16"),
+    )
+    own = Flanks(f"rotation: ccw\n{text}", tmp_path)
+    path = own.written(own.places + 2.0 * own.normals)
+    for flank in own.verified(path, probe_radius=2)["made"]["flanks"]:
+        assert abs(flank["worst"]) < 1e-7
+
+
+# --- files ------------------------------------------------------------------------------------------------------------
+
+
+def test_a_page_a_drawing_and_a_table_of_points(drum: Flanks, tmp_path: Path) -> None:
+    """A burr of 20 um is the first of the farthest points, the longest stroke of the drawing, and an outlier."""
+    e = np.full(len(drum.places), 0.005)
+    burr = 3 * 100 + 1
+    e[burr] += 0.020
+    path = drum.written(drum.places + e[:, None] * drum.normals)
+    report = drum.verified(path, out=str(tmp_path / "measured"))["made"]
+    page, svg, table = report["written"]
+    rows = np.genfromtxt(table, delimiter=",", names=True)
+    assert len(rows) == len(drum.places)
+    at = rows[(rows["line"] == burr + 2)][0]
+    places = [at["x_mm"], at["y_mm"], at["z_mm"]]
+    assert places == pytest.approx((drum.places + e[:, None] * drum.normals)[burr].tolist(), abs=1e-8)
+    # the foot is within e^2/R, as the distance is
+    feet = [at[f"foot_{axis}_mm"] for axis in "xyz"]
+    assert feet == pytest.approx(drum.places[burr].tolist(), abs=0.025**2 / 10.0)
+    assert (at["surface"], at["file_"], at["outlier"]) == (1, 1, 1)
+    assert at["shaft_deg"] == pytest.approx(drum.shaft[burr], abs=0.02)  # e over the lever, about
+    assert at["deviation_mm"] == pytest.approx(0.025, abs=1e-6)
+    assert np.delete(rows["deviation_mm"], burr) == pytest.approx(0.005, abs=1e-6)
+    assert rows["outlier"].sum() == 1
+    text = Path(page).read_text("utf-8")
+    first = re.search(r"<tr><td>([^<]*)</td><td>([^<]*)</td><td>([^<]*)</td>", text.partition("deviation</th>")[2])
+    assert first is not None
+    assert first[1] == "+0.025"
+    assert f"<td>points.csv</td><td>{burr + 2}</td>" in text
+    assert text.count("Error of the motion by the") == len(report["rings"])
+    drawn = Path(svg).read_text("utf-8")
+    strokes = re.findall(r"M([\d.e-]+),([\d.e-]+)L([\d.e-]+),([\d.e-]+)", drawn)
+    lengths = sorted(float(a[1]) - float(a[3]) for a in strokes)
+    magnified = float(re.search(r"magnified ([\d.e+]+) times", drawn)[1])
+    # in its own axes y points down: metal on a lower flank points up
+    assert lengths[-1] == pytest.approx(0.025 * magnified, rel=1e-2)
+    assert lengths[-2] == pytest.approx(0.005 * magnified, rel=5e-2)
+    assert lengths[0] == pytest.approx(-0.005 * magnified, rel=5e-2)
+
+
+def test_points_of_a_drum_that_turns_the_other_way_stand_in_the_axes_of_their_file(tmp_path: Path) -> None:
+    own = Flanks(f"rotation: ccw\n{PLAY}", tmp_path)
+    written = own.verified(own.table, out=str(tmp_path / "measured"))["made"]["written"]
+    rows = np.genfromtxt(written[2], delimiter=",", names=True)
+    assert rows["y_mm"] == pytest.approx(own.places[:, 1], abs=1e-8)
+    assert rows["foot_y_mm"] == pytest.approx(own.places[:, 1], abs=1e-6)

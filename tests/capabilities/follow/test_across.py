@@ -5,14 +5,14 @@ from __future__ import annotations
 import json
 import math
 from itertools import pairwise
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 import pytest
 from support.heavy import ezdxf
 
 import camgeo
-from camgeo.capabilities.follow.library import judged_by_recipe
+from camgeo.capabilities.follow.followed import judged_by_recipe
 from camgeo.cli.main import main
 
 if TYPE_CHECKING:
@@ -145,7 +145,9 @@ def test_points_are_followed_where_they_go_all_the_way_round(tmp_path: Path) -> 
 
 def test_a_contour_is_mirrored_and_turned_about_the_shaft(tmp_path: Path) -> None:
     path = rings(tmp_path / "cam.dxf", 0.0)
-    for how, place in (({"turn": 30.0}, 30.0), ({"mirror": "y", "turn": 30.0}, 210.0), ({"mirror": "x"}, 0.0)):
+    hows: list[tuple[dict[str, Any], float]]
+    hows = [({"turn": 30.0}, 30.0), ({"mirror": "y", "turn": 30.0}, 210.0), ({"mirror": "x"}, 0.0)]
+    for how, place in hows:
         followed = camgeo.follow(path, roller=5.0, **how)
         assert math.degrees(followed.greatest[1]) == pytest.approx(place, abs=1e-4)
     with pytest.raises(camgeo.CallError, match="turned by at most 360 degrees, not 400"):

@@ -9,7 +9,7 @@ import json
 import math
 import os
 import re
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, Literal
 
 import numpy as np
 import pytest
@@ -19,8 +19,7 @@ from support.heavy import ezdxf
 from support.places import RECIPES
 
 import camgeo
-from camgeo.capabilities.follow.command import summary
-from camgeo.capabilities.follow.library import judged_by_recipe
+from camgeo.capabilities.follow.followed import judged_by_recipe, summary
 from camgeo.cli.exit_status import OK, WRONG
 from camgeo.cli.main import main
 from kin.contour.about import tracks
@@ -500,7 +499,9 @@ TWO_ROLLERS: dict[str, Any] = {
 @pytest.mark.parametrize("rotation", ["cw", "ccw"])
 @pytest.mark.parametrize("kind", ["dxf", "svg", "stl"])
 @pytest.mark.parametrize("name", MADE)
-def test_each_follower_on_each_kind_of_file(tmp_path: Path, name: str, kind: str, rotation: str) -> None:
+def test_each_follower_on_each_kind_of_file(
+    tmp_path: Path, name: str, kind: str, rotation: Literal["cw", "ccw"]
+) -> None:
     """The law, the pressure angle, and a recipe whose cam is the file's within two readings, by the judge."""
     shipped = RECIPES / f"{name}.yaml"
     recipe = camgeo.load(shipped if shipped.is_file() else TWO_ROLLERS)

@@ -12,7 +12,7 @@ from support.drawn import circle
 from support.heavy import ezdxf
 
 import camgeo
-from camgeo.capabilities.follow.library import judged_by_recipe
+from camgeo.capabilities.follow.followed import judged_by_recipe
 
 if TYPE_CHECKING:
     from pathlib import Path

@@ -45,6 +45,18 @@ def test_a_knife_edge_reads_the_outline_off(wedge: str, tmp_path: Path, capsys: 
     assert float(at_80[2]) == pytest.approx(0.25)
 
 
+def test_the_library_follows_a_plate(wedge: str) -> None:
+    followed = camgeo.follow(wedge, linear=(10, 150), roller=0)
+    assert followed.unit == "mm"
+    assert [followed.position[0], followed.position[-1]] == pytest.approx([40.0, 60.0])
+    with pytest.raises(camgeo.CallError, match="lean goes with linear: give both, or leave lean out"):
+        camgeo.follow(wedge, roller=0, lean=5)
+    with pytest.raises(TypeError, match="linear must be a tuple of numbers, not str"):
+        camgeo.follow(wedge, linear="10,150", roller=0)
+    with pytest.raises(camgeo.CallError, match="no page is made of a plate"):
+        followed.page()
+
+
 def test_an_arm_swings(wedge: str, capsys: pytest.CaptureFixture[str]) -> None:
     """On the level an arm of 30 about a pivot 55 high has its roller of 5 at 45: asin(-1/3)."""
     assert main(["follow", wedge, "--linear", "40,60", "--roller", "5", "--arm", "55,30"]) == 0
@@ -56,6 +68,7 @@ def test_an_arm_swings(wedge: str, capsys: pytest.CaptureFixture[str]) -> None:
     [
         (("--linear", "9"), "linear takes two inputs in mm"),
         (("--linear", "0,9"), "give --roller with a radius"),
+        (("--linear", "0,9", "--roller", "3", "--width", "5"), "leave the other options out"),
         (("--linear", "0,9", "--roller", "3", "--page", "a.html"), "no page is made of a plate"),
         (("--linear", "0,9", "--roller", "3", "--lean", "89"), "a stem leans by up to 80 degrees"),
         (("--linear", "0,999", "--roller", "3"), "the follower touches nothing at input"),

@@ -8,14 +8,14 @@ import numpy as np
 from support.measured import RECIPES, bump, measured
 
 import camgeo
-from camgeo.capabilities.made.out_folder import HIGH, RIGHT, WIDE, _plot
+from camgeo.report.measured_page import HIGH, RIGHT, WIDE, plot
 
 LIMITED = RECIPES["roller on a stem"] + "\nmade: {profile: 0.04, datum: part}\n"
 
 
 def test_a_plot_goes_from_0_to_360_and_its_numbers_are_not_cut():
     x = np.arange(0.5, 360.0)
-    drawn = _plot(x, 0.01 * np.sin(np.radians(x)) + 0.002, np.full(360, 0.001))
+    drawn = plot(x, 0.01 * np.sin(np.radians(x)) + 0.002, np.full(360, 0.001))
     texts = re.findall(r'<text x="([\d.]+)" y="[\d.]+" text-anchor="middle" font-size="12">(\d+)</text>', drawn)
     assert [words for _, words in texts] == ["0", "60", "120", "180", "240", "300", "360"]
     assert float(texts[-1][0]) + 0.5 * 3 * 8.0 < WIDE  # three figures of 8 px at most
