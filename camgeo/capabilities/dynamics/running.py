@@ -341,15 +341,18 @@ def float_rpm(running: Running, stretches: Sequence[tuple[float, float]]) -> flo
 
     speeds = [math.inf]
     for more in running.doubts:
+
+        def held(t: Array, more: float = more) -> Array:
+            return parts(t, more)[1][None]
+
+        def share(t: Array, more: float = more) -> Array:
+            inertia, rest = parts(t, more)
+            return (-inertia / rest)[None]
+
         for stretch in stretches:
-            ((held, _),) = turn.extremes(lambda t, more=more: parts(t, more)[1][None], stretch)
-            if held.value <= 0.0:
+            ((least, _),) = turn.extremes(held, stretch)
+            if least.value <= 0.0:
                 return 0.0
-
-            def share(t: Array, more: float = more) -> Array:
-                inertia, rest = parts(t, more)
-                return (-inertia / rest)[None]
-
             ((_, most),) = turn.extremes(share, stretch)
             if most.value > 0.0:
                 speeds.append(60.0 / TURN / math.sqrt(most.value))

@@ -28,7 +28,8 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
         "file", type=name_of, metavar="FILE", help="a drawing, a solid, or points x, y round the contour"
     )
-    parser.add_argument("--roller", type=length, metavar="R", help="radius of the roller, mm; 0 for a knife edge")
+    text = "radius of the roller, mm or with its unit, 0.375in; 0 for a knife edge"
+    parser.add_argument("--roller", type=length, metavar="R", help=text)
     parser.add_argument("--shoe", type=length, metavar="R", help="radius of a curved shoe, mm, in place of a roller")
     parser.add_argument("--flat", action="store_true", help="a flat face in place of a roller")
     parser.add_argument("--width", type=length, metavar="W", help="width of that face, centred on the stem's axis, mm")

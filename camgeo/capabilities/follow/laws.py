@@ -19,6 +19,7 @@ if TYPE_CHECKING:
 
 ROUND = 0.25  # of the reading, by which round numbers may move the motion
 LEAST = 1e-9  # mm or rad: nothing is known better
+FITTED = 180  # positions of a turn to which laws are fitted: more cost more, and tell hardly more
 ROUNDS = 30  # of the secant by which a position is found; it settles in a few
 
 
@@ -45,9 +46,12 @@ def laws_of(motion: MeasuredMotion, follower: FollowerDescription, reading: floa
     """
     position = motion.rows[0]
     turn = WholeTurn(position, facets / 3.0)
-    programme = recognised(turn, reading, motion.unit) if np.ptp(position) > 2.0 * reading else None
+    # laws are fitted to a part of the positions, and held to all of them
+    part = replace(turn, position=position[:: _stride(len(position))])
+    programme = recognised(part, reading, motion.unit) if np.ptp(position) > 2.0 * reading else None
     if programme is None:
         return Laws(None, why="there are no strokes between dwells or turning points")
+    programme = programme.written(turn, programme.boundaries, programme.levels)
     scale = 1.0 if motion.unit == "mm" else math.degrees(1.0)
     # as round as the facets or a share of the reading let them be; else as the residuals say
     error = max(facets, ROUND * reading)
@@ -66,6 +70,11 @@ def laws_of(motion: MeasuredMotion, follower: FollowerDescription, reading: floa
             return Laws(rows, base, tuple(lines), scale * max(found.left + abs(moved), LEAST))
     begin = _beginning(motion, programme, reading) if why == STROKES_BEGIN else None
     return Laws(None, why=why, begin=begin)
+
+
+def _stride(count: int) -> int:
+    """The greatest divisor of a number of positions that leaves FITTED of them or more."""
+    return next(stride for stride in range(max(count // FITTED, 1), 0, -1) if count % stride == 0)
 
 
 def _base(programme: Programme, follower: FollowerDescription) -> tuple[float, float]:

@@ -21,7 +21,7 @@ if TYPE_CHECKING:
 
     from kin.numeric.arrays import Array
 
-STEPS = 120
+STEPS = 90
 READING = 0.02
 BASE, ROLLER = 40.0, 9.0
 
@@ -62,6 +62,7 @@ def followed(folder: Path, motion: Callable[[Array], Array], **options: Any) -> 
     return camgeo.follow(path, roller=ROLLER, reading=READING, steps=STEPS, **options)
 
 
+@pytest.mark.costly("all laws are tried on each stroke")
 @pytest.mark.parametrize("offset", [0.0, 8.0])
 def test_laws_that_were_drawn_are_found(tmp_path: Path, offset: float) -> None:
     found = followed(tmp_path, lift, offset=offset)
@@ -87,6 +88,7 @@ def test_laws_that_were_drawn_are_found(tmp_path: Path, offset: float) -> None:
     assert "law" not in found.recipe("found.csv")
 
 
+@pytest.mark.costly("all laws are tried on each stroke")
 @pytest.mark.parametrize("rotation", ["cw", "ccw"])
 def test_a_turn_that_begins_in_a_stroke_is_told_where_to_begin(tmp_path: Path, rotation: Literal["cw", "ccw"]) -> None:
     """A contour that turns the other way is the mirrored one."""
