@@ -207,8 +207,8 @@ def _follow(arguments: argparse.Namespace) -> FollowedPlate:
     if len(span) != len(("from", "to")) or not span[0] < span[1]:
         raise CallError("linear takes two inputs in mm, the lesser first, such as --linear 0,120")
     of_discs = (arguments.flat, arguments.yoke, arguments.offset, arguments.track != "external", arguments.across)
-    of_discs = (*of_discs, arguments.mirror, arguments.turn, arguments.body is not None, arguments.width is not None)
-    if any(of_discs):
+    given = arguments.body is not None or arguments.width is not None
+    if any(of_discs) or arguments.mirror or arguments.turn or given:
         raise CallError("a plate is followed by a roller, a shoe or a knife edge: leave the other options out")
     radius = arguments.shoe if arguments.shoe is not None else arguments.roller
     if radius is None or not radius >= 0.0:
