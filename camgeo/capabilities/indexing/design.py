@@ -45,6 +45,12 @@ class IndexDesign:
         recipe = self.recipe
         return replace(self, recipe=replace(recipe, roller=replace(recipe.roller, radius=radius)))
 
+    def shortened(self, length: float) -> IndexDesign:
+        """The same cam of another length, mm, with the turret's axis in its middle."""
+        recipe, height = self.recipe, 0.5 * length
+        form, turret = replace(recipe.form, length=length, height=height), replace(recipe.turret, height=height)
+        return replace(self, recipe=replace(recipe, form=form, turret=turret))
+
     @property
     def largest(self) -> float:
         """Radius of the roller of that flank, mm, whose roller is larger."""

@@ -213,7 +213,9 @@ def write_development(
     lines = [drawn(design, line, tolerance) for line in developed(design, request, mm)]
 
     def annotate(space: Modelspace) -> Box:
-        boxes = [_draw(space, line.of.layer, COLOURS[line.of.flank], piece / mm) for line in lines for piece in line.pieces]
+        boxes = [
+            _draw(space, line.of.layer, COLOURS[line.of.flank], piece / mm) for line in lines for piece in line.pieces
+        ]
         for radius in dict.fromkeys(line.of.radius for line in lines):
             layer = f"R{radius / mm:.9g}_{MARKS}"
             turn = recipe.sense * TURN * radius

@@ -12,7 +12,7 @@ from kin.numeric.records import dataclass
 
 if TYPE_CHECKING:
     from camgeo.capabilities.indexing.design import IndexDesign
-    from kin.numeric.arrays import Array
+    from kin.numeric.arrays import Array, Indices
 
 ALONG = 9  # places along a roller between which it is sought where the flank ends
 
@@ -46,7 +46,7 @@ class Engaged:
         first, last = np.argmax(inside, axis=0), ALONG - 1 - np.argmax(inside[::-1], axis=0)
         before, behind = np.maximum(first - 1, 0), np.minimum(last + 1, ALONG - 1)
 
-        def crossing(out: Array, within: Array) -> Array:
+        def crossing(out: Indices, within: Indices) -> Array:
             here, there = (np.take_along_axis(margin, each[None], axis=0)[0] for each in (within, out))
             share = np.where(there < here, here / np.maximum(here - there, 1e-300), 0.0)
             return np.asarray(rho[within] + np.clip(share, 0.0, 1.0) * (rho[out] - rho[within]))

@@ -75,4 +75,4 @@ def stated_motion(design: IndexDesign) -> StatedMotion:
         return np.asarray(design.law.derivatives(flat, 0)[0].reshape(np.shape(theta)))
 
     shown = math.degrees(1.0)
-    return StatedMotion(recipe.motion, TURN, recipe.motion.repeats, None, lift, shown, shown)
+    return StatedMotion(recipe.motion, TURN, recipe.motion.repeats, "nothing", lift, shown, shown)

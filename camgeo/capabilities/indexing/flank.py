@@ -32,6 +32,7 @@ if TYPE_CHECKING:
     from kin.numeric.arrays import Array, Indices
 
 NEWTON, SETTLED = 60, 1e-13  # steps, and the share of a layer by which the last one moves
+THERE = 1e-6  # of a layer, by which the place that settles may miss it
 
 
 class Contact(NamedTuple):
@@ -107,9 +108,7 @@ class Flank:
         a1, a2 = ((cosine * b - sine * a) * inverse for a, b in ((speed.a1, speed.b1), (speed.a2, speed.b2)))
         turn, bend = self.form.tilt(pose)[0] - a1, w * a2 * -1.0
         along, beside = w + turn * reach, self.form.slip(pose, rho)[0] + bend * reach
-        return Touch(
-            sine, cosine, w, w1, w2, a1, a2, turn, bend, along, beside, along + a2 * beside * reach
-        )
+        return Touch(sine, cosine, w, w1, w2, a1, a2, turn, bend, along, beside, along + a2 * beside * reach)
 
     def place(self, pose: Pose, rho: Number, sine: Number, cosine: Number) -> Vector:
         """Places of contacts along e_r, e_t and k, mm, of arrays or balls."""
@@ -164,8 +163,10 @@ class Flank:
                 layer, outwards = self.outwards(part, own, touch)
                 step = (layer - layer_of) / self.rising(touch, outwards)[1]
                 step = np.where(np.isfinite(step), np.clip(step, -0.5 * own, 0.5 * own), 0.5 * own)
-                rho[open_] = own - step
-                open_ = open_[np.abs(step) > SETTLED * layer_of]
+                settled = np.abs(step) <= SETTLED * layer_of
+                # where no place is touched, rho may shrink to nothing and settle there
+                rho[open_] = np.where(settled & ~(np.abs(layer - layer_of) < THERE * layer_of), np.nan, own - step)
+                open_ = open_[~settled]
                 if not open_.size:
                     break
         rho[open_] = np.nan

@@ -12,24 +12,12 @@ if TYPE_CHECKING:
     from typing import ClassVar
 
     from camgeo.capabilities.indexing.forms import Barrel, Globoid
-    from camgeo.capabilities.indexing.turrets import Turret
+    from camgeo.capabilities.indexing.turrets import Roller, Turret
     from camgeo.motions.motion import MotionSource
     from camgeo.part.part import Part
     from camgeo.recipe.export import FileRequest
     from camgeo.recipe.figure_bounds import Bound
     from camgeo.recipe.materials import Material
-
-
-@dataclass(frozen=True)
-class Roller:
-    """A cylindrical roller that bears from `inner` to `outer` along its axis, mm.
-
-    These are distances from the axis of a barrel; of a globoid from that of its turret.
-    """
-
-    radius: float
-    inner: float
-    outer: float
 
 
 @dataclass(frozen=True)

@@ -3,12 +3,12 @@
 from __future__ import annotations
 
 import math
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, Literal
 
 from camgeo.capabilities.indexing.forms import Barrel, Globoid
-from camgeo.capabilities.indexing.index_recipe import Drive, IndexRecipe, Roller
+from camgeo.capabilities.indexing.index_recipe import Drive, IndexRecipe
 from camgeo.capabilities.indexing.keys import FILES, FLOOR_GAP, RECIPE
-from camgeo.capabilities.indexing.turrets import BarrelTurret, GloboidTurret
+from camgeo.capabilities.indexing.turrets import BarrelTurret, GloboidTurret, Roller
 from camgeo.common.rounding import downward, upward
 from camgeo.motions.motion import check_filled
 from camgeo.part import bore
@@ -300,7 +300,8 @@ def _form(values: Values) -> tuple[Barrel | Globoid, Turret]:
     if "globoid" in cam:
         distance = cam["globoid"]["distance"]
         return Globoid(radius=cam["globoid"]["radius"], distance=distance, **common), GloboidTurret(height, distance)
-    side, pitch = (-1 if given.get("side") == "leading" else 1), given["radius"]
+    side: Literal[-1, 1] = -1 if given.get("side") == "leading" else 1
+    pitch = given["radius"]
     usual = 0.5 * side * pitch * (1.0 + math.cos(math.pi / given["stops"]))
     offset = cam["barrel"].get("offset", usual)
     form = Barrel(radius=cam["barrel"]["radius"], offset=offset, pitch=pitch, side=side, **common)

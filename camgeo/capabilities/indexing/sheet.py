@@ -2,7 +2,8 @@
 
 Where a flank enters at the lower end face and leaves at the upper one, columns end on that face. The breaks of the
 motion, and the corners of the flank, lie on columns. Two columns are joined from the floor to the blank in the order of
-their layers. Each triangle lies in a box of shaft angles and rho, whose bound is proved
+their layers. Where an end is met twice at one shaft angle, the columns before it lean instead, so that the last one lies
+in the end face. Each triangle lies in a box of shaft angles and rho, whose bound is proved
 (`camgeo.capabilities.indexing.bends`).
 """
 
@@ -35,6 +36,8 @@ MORE = 1.5  # times the fewest cells so far, from which on more rows are not tri
 ROUNDS = 40  # in which columns are divided and rows added
 MORE_ROWS = 1.2  # times as many rows, where they are too far apart
 SHARE = 0.9  # of a tolerance that the first columns are made for
+LAYERS = 33  # in which ends are looked at
+LEAN = 0.01  # rad over which columns lean at least
 SAME = 1e-12  # rad: shaft angles so near are one
 NEAR = 1e-3  # of the distance of rows: so near to the end of a column no row has a point of its own
 BEYOND = 1e-6  # mm by which a point in a column may lie beyond an end face
@@ -61,6 +64,26 @@ class Sheet:
     off: float
 
 
+class _Lean(NamedTuple):
+    """Columns that lean: from the shaft angle `begin`, rad, on, up to the end face; the last one stands for `end`."""
+
+    begin: float
+    end: float
+
+
+class _Shape(NamedTuple):
+    """Shaft angles of the ends of floor and blank, rad (2, 2), by the end face, and how columns lean there, if so."""
+
+    corners: Array
+    leans: tuple[_Lean | None, _Lean | None]
+
+    @property
+    def ends(self) -> tuple[float, float]:
+        """Shaft angles, rad, of the first and the last column."""
+        low, high = self.leans
+        return low.end if low else float(self.corners[0].min()), high.end if high else float(self.corners[1].max())
+
+
 class _Ends(NamedTuple):
     """Where columns (n,) begin towards the floor and end towards the blank, mm, and by which end face, 0, 1 or -1."""
 
@@ -81,6 +104,12 @@ class _Net(NamedTuple):
     triangles: Indices
     columns: list[Indices]
 
+    @property
+    def gaps(self) -> Indices:
+        """Number of the gap between columns in which each triangle lies (t,)."""
+        own = np.repeat(np.arange(len(self.columns)), [column.size for column in self.columns])
+        return np.asarray(own[self.triangles].min(axis=1))
+
 
 def sheet_of(flank: Flank, tolerance: float, wide: tuple[float, float]) -> Sheet:
     """Sheet within a tolerance, mm, of a flank that is regular.
@@ -88,13 +117,13 @@ def sheet_of(flank: Flank, tolerance: float, wide: tuple[float, float]) -> Sheet
     In the layers of floor and blank its edges span at most the polar angle and height `wide` of (phi, h). Raises
     ToleranceError where it would have too many triangles, and as `span_of` does.
     """
-    corners = span_of(flank, np.array([flank.form.floor, flank.form.blank])).theta
-    theta, rows = _first(flank, corners, tolerance, wide)
+    shape = _shape(flank)
+    theta, rows = _first(flank, shape, tolerance, wide)
     off = np.array([math.inf])
     for _ in range(ROUNDS):
         if theta.size * rows > MOST_CELLS:
             raise _too_many(tolerance, theta.size * rows)
-        net = _net(flank, _column_ends(flank, theta, corners), rows)
+        net = _net(flank, shape, theta, rows)
         off, across = _off(flank, net)
         bad = ~(off <= tolerance)
         edges = _edges_wide(flank, net, theta.size, wide)
@@ -104,16 +133,37 @@ def sheet_of(flank: Flank, tolerance: float, wide: tuple[float, float]) -> Sheet
         if deep.any():
             rows = math.ceil(MORE_ROWS * rows)
         split = edges
-        split[_column_of(net, theta)[bad & across]] = True
+        split[net.gaps[bad & across]] = True
         theta = np.sort(np.concatenate([theta, 0.5 * (theta[:-1] + theta[1:])[split]]))
     raise ToleranceError(f"a flank is not within {tolerance:.3g} mm", float(np.nanmax(off)))
 
 
-def _first(flank: Flank, corners: Array, tolerance: float, wide: tuple[float, float]) -> tuple[Array, int]:
-    """Shaft angles of columns, rad, and number of rows that about hold a tolerance."""
-    begin, end = float(corners.min()), float(corners.max())
+def _shape(flank: Flank) -> _Shape:
+    """Where a flank begins and ends; raises TrackError as `span_of` does."""
+    ends = span_of(flank, layers_of(flank, LAYERS)).theta
+    leans: list[_Lean | None] = []
     breaks = breaks_within(flank)
-    knots = np.unique(np.concatenate([corners.ravel(), breaks[(breaks > begin) & (breaks < end)]]))
+    for k, sense in ((0, -1.0), (1, 1.0)):
+        steps = np.diff(ends[k])
+        if bool((steps >= 0.0).all() or (steps <= 0.0).all()):
+            leans.append(None)
+            continue
+        inner, outer = sorted((sense * ends[k]).tolist())[:: LAYERS - 1]
+        before = sense * breaks[sense * breaks < inner - SAME]
+        begin = max(inner - LEAN - 0.5 * (outer - inner), float(before.max(initial=-math.inf)))
+        if ((sense * breaks > inner - SAME) & (sense * breaks < outer + SAME)).any():
+            problem = f"the {NAMES[flank.side]} flank meets an end face along a break of the motion"
+            raise TrackError(problem, sense * inner, "give a part.length that is a little less")
+        leans.append(_Lean(sense * begin, sense * (outer + 0.5 * (inner - begin))))
+    return _Shape(ends[:, [0, -1]], (leans[0], leans[1]))
+
+
+def _first(flank: Flank, shape: _Shape, tolerance: float, wide: tuple[float, float]) -> tuple[Array, int]:
+    """Shaft angles of columns, rad, and number of rows that about hold a tolerance."""
+    begin, end = shape.ends
+    breaks = breaks_within(flank)
+    own = [[lean.begin, lean.end] if lean else shape.corners[k].tolist() for k, lean in enumerate(shape.leans)]
+    knots = np.unique(np.concatenate([*own, breaks[(breaks > begin) & (breaks < end)]]))
     knots = knots[np.append(np.diff(knots) > SAME, True)]
     even = np.linspace(begin, end, max(2, math.ceil(LOOKS * (end - begin) / TURN)) + 1)
     look = np.unique(np.concatenate([even, knots]))
@@ -162,11 +212,13 @@ def _bounds(flank: Flank, look: Array) -> tuple[Bends, Array]:
     return found, high - low
 
 
-def _column_ends(flank: Flank, theta: Array, corners: Array) -> _Ends:
-    """Where columns begin and end; `corners` (2, 2) are the shaft angles of the ends of floor and blank."""
+def _column_ends(flank: Flank, theta: Array, shape: _Shape) -> _Ends:
+    """Where columns begin and end in the depth."""
     inner, outer = np.full_like(theta, flank.form.floor), np.full_like(theta, flank.form.blank)
     faces = np.full((2, theta.size), -1)
-    for k, (of_floor, of_blank) in enumerate(corners.tolist()):
+    for k, (of_floor, of_blank) in enumerate(shape.corners.tolist()):
+        if shape.leans[k] is not None:
+            continue
         low, high = min(of_floor, of_blank), max(of_floor, of_blank)
         zone = np.flatnonzero((theta >= low - SAME) & (theta <= high + SAME))
         w = layers_at(flank, theta[zone], k * flank.form.length)
@@ -178,8 +230,9 @@ def _column_ends(flank: Flank, theta: Array, corners: Array) -> _Ends:
     return _Ends(theta, inner, outer, faces[0], faces[1])
 
 
-def _net(flank: Flank, ends: _Ends, rows: int) -> _Net:
+def _net(flank: Flank, shape: _Shape, nominal: Array, rows: int) -> _Net:
     """Points and triangles between columns, with so many steps from floor to blank."""
+    ends = _column_ends(flank, nominal, shape)
     floor, blank = flank.form.floor, flank.form.blank
     layers = np.linspace(floor, blank, rows + 1)
     depth = np.abs(layers - floor)
@@ -200,6 +253,13 @@ def _net(flank: Flank, ends: _Ends, rows: int) -> _Net:
         face.append(mark)
         count += own.size
     at, layer, faces = np.concatenate(theta), np.concatenate(w), np.concatenate(face)
+    for k, lean in enumerate(shape.leans):
+        if lean is not None:
+            own = (at < lean.begin) if k == 0 else (at > lean.begin)
+            share = (at[own] - lean.begin) / (lean.end - lean.begin)
+            last = span_of(flank, layers).theta[k]
+            faces[own] = np.where(share == 1.0, k, faces[own])
+            at[own] = lean.begin + share * (np.interp(np.abs(layer[own] - floor), depth, last) - lean.begin)
     rho = flank.reached(flank.pose(at), layer)
     if not np.isfinite(rho).all():
         raise CurveError("the roller does not touch a layer of the cam", float(at[~np.isfinite(rho)][0]))
@@ -238,11 +298,6 @@ def _off(flank: Flank, net: _Net) -> tuple[Array, Mask]:
     beside = np.roll(corners, 1, axis=1) == corners
     apart = np.where(beside, np.abs(np.roll(depths, 1, axis=1) - depths), 0.0).max(axis=1)
     return off, found.off(np.zeros_like(off), apart) < 0.5 * off
-
-
-def _column_of(net: _Net, theta: Array) -> Indices:
-    """Number of the gap between columns in which each triangle lies (t,)."""
-    return np.asarray(np.searchsorted(theta, net.theta[net.triangles].min(axis=1)))
 
 
 def _edges_wide(flank: Flank, net: _Net, count: int, wide: tuple[float, float]) -> Mask:

@@ -15,7 +15,6 @@ import numpy as np
 
 from camgeo.capabilities.indexing.band import filled
 from camgeo.capabilities.indexing.sheet import sheet_of
-from camgeo.capabilities.indexing.spans import TrackError
 from camgeo.files.errors import RegionError
 from camgeo.files.mesh import Mesh, MeshFacts
 from camgeo.files.prism import rounded_loop
@@ -90,12 +89,11 @@ class _Wall(NamedTuple):
     ends: tuple[Indices, Indices]
 
 
-
 def index_mesh(design: IndexDesign, tolerance: float, precision: Precision) -> tuple[Mesh, MeshFacts]:
     """Closed, oriented mesh of the cam, mm, within a tolerance of every surface, and facts on it.
 
-    Raises ToleranceError where the tolerance cannot be held in the precision, TrackError where the track does not go
-    from one end face to the other, RegionError where no sound body is made.
+    Raises ToleranceError where the tolerance cannot be held in the precision, CurveError and RegionError where no sound
+    body is made.
     """
     recipe, form = design.recipe, design.recipe.form
     size = max(form.rim(form.blank), abs(form.length))
@@ -106,7 +104,6 @@ def index_mesh(design: IndexDesign, tolerance: float, precision: Precision) -> t
     sheets = {name: sheet_of(flank, fine, wide) for name, flank in design.flanks.items()}
     walls = {name: _wall(body, form, sheet) for name, sheet in sheets.items()}
     lower, upper = walls["lower"], walls["upper"]
-    _demand_mouths(lower, upper)
     mouths = [_arc(body, form, form.floor, (k, upper.floor, lower.floor), (0.0, 0.0), wide[0]) for k in range(2)]
     rims = [_arc(body, form, form.blank, (k, lower.blank, upper.blank), (-TURN, 0.0), wide[0]) for k in range(2)]
     off = _fill(body, form, form.floor, mouths[0].then(lower.floor), upper.floor.then(mouths[1]), wide)
@@ -142,17 +139,13 @@ def _wall(body: _Body, form: Barrel | Globoid, sheet: Sheet) -> _Wall:
     return _Wall(floor, blank, (number[sheet.ends[0]], number[sheet.ends[1]]))
 
 
-def _demand_mouths(lower: _Wall, upper: _Wall) -> None:
-    """Raise TrackError where the rib between two turns of the track does not reach an end face."""
-    for a, b in ((lower.floor, upper.floor), (lower.blank, upper.blank)):
-        for k, name in ((0, "lower"), (-1, "upper")):
-            if not 0.0 < a.phi[k] - b.phi[k] < TURN:
-                problem = f"the track is open over a whole turn at the {name} end face: the rib does not reach it"
-                raise TrackError(problem, float(a.phi[k]), "give another part.length, or turret.start")
-
-
 def _arc(
-    body: _Body, form: Barrel | Globoid, w: float, between: tuple[int, _Line, _Line], turn: tuple[float, float], wide: float
+    body: _Body,
+    form: Barrel | Globoid,
+    w: float,
+    between: tuple[int, _Line, _Line],
+    turn: tuple[float, float],
+    wide: float,
 ) -> _Line:
     """The edge of a layer with an end face, 0 or 1, from the end of one line to that of another, both turned."""
     k, first, last = between

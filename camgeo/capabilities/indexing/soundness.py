@@ -7,7 +7,9 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from camgeo.capabilities.indexing.spans import TrackError, demand_clear, demand_ends
 from camgeo.capabilities.indexing.tracks import rib_thickness, track
+from camgeo.capabilities.indexing.undercut import demand_regular
 from camgeo.common.rounding import downward
 from camgeo.curve.curve import CurveError
 
@@ -35,8 +37,9 @@ def demand_room(design: IndexDesign) -> None:
 
 
 def demand_sound(design: IndexDesign) -> None:
-    """Raise RecipeErrors for a flank that is undercut, and where two rollers leave no rib between them."""
+    """Raise RecipeErrors for a track that turns back, a flank that is undercut, and rollers that leave no rib."""
     for name in design.flanks:
+        _demand_forward(design, name)
         try:
             least, at, layer = _least_regular(design, name)
         except CurveError as error:
@@ -53,6 +56,82 @@ def demand_sound(design: IndexDesign) -> None:
     if not thin > 0.0:
         problem = f"the rollers leave no rib between them, near {math.degrees(at) % 360.0:.6g} degrees"
         raise design.error(ROLLER, problem, _smaller(design, lambda other: rib_thickness(other)[0] > 0.0))
+    _demand_proved(design)
+
+
+def _demand_proved(design: IndexDesign) -> None:
+    """Raise RecipeErrors where the track does not go from end face to end face, or undercut is not proved away."""
+    try:
+        demand_ends(design.flanks)
+        for flank in design.flanks.values():
+            demand_clear(flank)
+    except TrackError as error:
+        length = _largest(design.recipe.length, lambda length: _passes(design.shortened(length)))
+        mm, units = design.recipe.mm, design.recipe.units
+        remedy = error.remedy
+        if length > 0.0:
+            remedy = f"give at most {downward(length / mm, 4)} {units}, with the turret's axis in its middle"
+        where = f"near {math.degrees(error.parameter) % 360.0:.6g} degrees"
+        raise design.error("part.length", f"{error}, {where}", remedy) from error
+    try:
+        for flank in design.flanks.values():
+            demand_regular(flank)
+    except CurveError as error:
+        where = f"near {math.degrees(error.parameter) % 360.0:.6g} degrees"
+        raise design.error(ROLLER, f"{error}, {where}", _smaller(design, _proved)) from error
+
+
+def _passes(design: IndexDesign) -> bool:
+    try:
+        demand_ends(design.flanks)
+    except CurveError:
+        return False
+    return True
+
+
+def _proved(design: IndexDesign) -> bool:
+    try:
+        for flank in design.flanks.values():
+            demand_regular(flank)
+    except CurveError:
+        return False
+    return True
+
+
+def _demand_forward(design: IndexDesign, name: str) -> None:
+    """Raise RecipeErrors where a turret takes its roller back as fast as the cam turns: its track would turn back."""
+    least, at = _forward(design, name)
+    if not least > 0.0:
+        problem = (
+            f"the turret takes a roller back as fast as the floor turns, near {math.degrees(at) % 360.0:.6g} degrees"
+        )
+
+        def sound(length: float) -> bool:
+            shorter = design.shortened(length)
+            return all(_forward(shorter, each)[0] > 0.0 for each in shorter.flanks) and _all_regular(shorter)
+
+        length = _largest(design.recipe.length, sound)
+        mm, units = design.recipe.mm, design.recipe.units
+        shorter = f", or a length of at most {downward(length / mm, 4)} {units}, with the turret's axis in its middle"
+        raise design.error(
+            "cam.motion", problem, f"give a longer rise{shorter if length > 2.0 * design.recipe.roller.radius else ''}"
+        )
+
+
+def _forward(design: IndexDesign, name: str) -> tuple[float, float]:
+    """Least A, mm, by which a roller moves on against the floor or the blank, across its way; its shaft angle, rad."""
+    found, form = [], design.recipe.form
+    for w in (form.floor, form.blank):
+        try:
+            theta, rows = track(design, name, w)
+        except CurveError:
+            return math.inf, 0.0  # told with the largest roller that serves
+        inside = np.flatnonzero((rows.z > 0.0) & (rows.z < form.length))
+        if inside.size:
+            along = form.speed(design.flanks[name].pose(theta[inside]), rows.rho[inside]).a
+            i = int(np.argmin(along))
+            found.append((float(along[i]), float(theta[inside][i])))
+    return min(found, default=(math.inf, 0.0))
 
 
 def _least_regular(design: IndexDesign, name: str) -> tuple[float, float, float]:
@@ -77,12 +156,15 @@ def _all_regular(design: IndexDesign) -> bool:
 
 def _smaller(design: IndexDesign, sound: Callable[[IndexDesign], bool]) -> str:
     """Remedy with the largest roller, to a thousandth, of which a cam is sound; empty where none is found."""
-    low, high = 0.0, design.recipe.roller.radius
-    while high - low > SHARP * high:
+    mm, units = design.recipe.mm, design.recipe.units
+    radius = _largest(design.recipe.roller.radius, lambda radius: sound(design.resized(radius)))
+    return f"give a roller radius of at most {downward(radius / mm, 4)} {units}" if radius > 0.0 else ""
+
+
+def _largest(high: float, sound: Callable[[float], bool]) -> float:
+    """A little less than the largest size below `high`, mm, to a thousandth, that is sound; 0 where none is found."""
+    low, limit = 0.0, SHARP * high
+    while high - low > max(SHARP * high, 0.1 * limit):
         middle = 0.5 * (low + high)
-        low, high = (middle, high) if sound(design.resized(middle)) else (low, middle)
-    if not low > 0.0:
-        return ""
-    return (
-        f"give a roller radius of at most {downward((1.0 - SHARP) * low / design.recipe.mm, 4)} {design.recipe.units}"
-    )
+        low, high = (middle, high) if sound(middle) else (low, middle)
+    return (1.0 - SHARP) * low

@@ -21,7 +21,6 @@ SEEK = 720  # shaft angles of a turn at which ends are sought
 LAYERS = 9  # at which a cam is looked at
 SETTLED = 1e-12  # rad: the last step to an end
 QUARTER = 0.5 * math.pi
-PARTS = 33  # of a line of contact
 NAMES = {-1: "lower", 1: "upper"}
 
 
@@ -165,60 +164,18 @@ def demand_clear(flank: Flank) -> None:
             raise TrackError(problem, where, "give a larger turret, or a shorter part.length")
 
 
-class Gap(NamedTuple):
-    """Least distance between two flanks in a layer, mm, the shaft angle of the lower flank there, rad, and the layer."""
+def demand_ends(flanks: Mapping[str, Flank]) -> None:
+    """Raise TrackError where the rib between two turns of the track does not reach an end face.
 
-    value: float
-    theta: float
-    w: float
-
-
-def rib_of(flanks: Mapping[str, Flank], w: Array, count: int = 2 * SEEK) -> Gap:
-    """Least thickness of the rib between two turns of the track, along the height h of layers (m,), mm.
-
-    The upper flank is below the rib, the lower one of a turn of the cam later above it. It is below 0 where the rib
-    vanishes.
+    Flanks are `lower` and `upper`; raises as `span_of` does, too.
     """
-    lower, upper = flanks["lower"], flanks["upper"]
-    best = Gap(math.inf, math.nan, math.nan)
-    spans = [span_of(each, w) for each in (lower, upper)]
-    for j, layer in enumerate(w.tolist()):
-        rows = []
-        for flank, span in zip((lower, upper), spans, strict=True):
-            turns = (span.theta[1, j] - span.theta[0, j]) / TURN
-            theta = np.linspace(*span.theta[:, j], max(3, math.ceil(count * turns)))
-            rows.append((theta, flank.on(theta, layer)))
-        (theta, over), (_, under) = rows
-        there = (over.phi - TURN >= under.phi[0]) & (over.phi - TURN <= under.phi[-1])
-        if not there.any():
-            continue
-        gap = (over.h - np.interp(over.phi - TURN, under.phi, under.h))[there] * lower.form.unit(layer)
-        k = int(np.argmin(gap))
-        if gap[k] < best.value:
-            best = Gap(float(gap[k]), float(theta[there][k]), layer)
-    return best
-
-
-def borne(flank: Flank, theta: Array, inner: float, outer: float) -> Array:
-    """Length of a roller's line of contact, mm (n,), at shaft angles (n,): within the cam, from rho `inner` to `outer`.
-
-    To a 32nd of the roller.
-    """
-    pose = flank.pose(theta)
-    step = (outer - inner) / (PARTS - 1)
-    low, high = sorted((flank.form.floor, flank.form.blank))
-    found = []
-    for rho in np.linspace(inner, outer, PARTS).tolist():
-        contact = flank.contact(theta, pose, np.full_like(theta, rho))
-        on_side = np.abs(flank.psi(theta)) < QUARTER
-        found.append((contact.w >= low) & (contact.w <= high) & (contact.z >= 0.0) & (contact.z <= flank.form.length) & on_side)
-    inside = np.array(found)
-    return np.asarray(step * np.sum(inside[1:] & inside[:-1], axis=0))
-
-
-def engaged(flank: Flank, theta: Array, inner: float, outer: float) -> Array:
-    """Number of rollers (n,) that a flank bears on at shaft angles (n,), rad, over all turns of the track."""
-    first, last = flank.law.turns
-    folded = np.mod(theta, TURN)
-    turns = range(first, last + 1)
-    return np.asarray(sum((borne(flank, folded + TURN * k, inner, outer) > 0.0).astype(int) for k in turns))
+    lower, upper = (
+        (flank, span_of(flank, np.array([flank.form.floor, flank.form.blank])))
+        for flank in (flanks["lower"], flanks["upper"])
+    )
+    for k, name in enumerate(("lower", "upper")):
+        (one, ends), (other, others) = lower, upper
+        open_ = one.on(ends.theta[k], ends.w).phi - other.on(others.theta[k], others.w).phi
+        if not bool(((open_ > 0.0) & (open_ < TURN)).all()):
+            problem = f"the track is open over a whole turn at the {name} end face: the rib does not reach it"
+            raise TrackError(problem, float(ends.theta[k][0]), "give another part.length, or turret.start")

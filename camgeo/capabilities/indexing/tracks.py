@@ -38,9 +38,11 @@ def track(design: IndexDesign, name: str, w: float) -> tuple[Array, Contact]:
 
 
 def rib_thickness(design: IndexDesign) -> tuple[float, float]:
-    """Least thickness of the rib within the cam, mm, and the shaft angle at which its lower roller is there, rad.
+    """Least thickness of the rib, mm, and the shaft angle at which its lower roller is there, rad.
 
-    It is measured along the cam's axis, in a globoid along arcs about the turret's axis, at floor, middle and blank.
+    It is measured along the cam's axis, in a globoid along arcs about the turret's axis, at floor, middle and blank,
+    where both its sides lie within the cam; of a rib that is none also where one of them does. Without such a place it
+    is infinite.
     """
     recipe, found = design.recipe, []
     for w in np.linspace(*recipe.layers, 3).tolist():
@@ -49,8 +51,10 @@ def rib_thickness(design: IndexDesign) -> tuple[float, float]:
         phi = upper.phi + TURN  # where the next roller comes after
         inside = (phi >= lower.phi[0]) & (phi <= lower.phi[-1])
         above = np.interp(phi[inside], lower.phi, lower.h)
-        between = (above > low) & (upper.h[inside] < high)
-        thick = recipe.form.unit(w) * (above - upper.h[inside])[between]
+        below = upper.h[inside]
+        both = (above > low) & (above < high) & (below > low) & (below < high)
+        between = both | ((above <= below) & (above > low) & (below < high))
+        thick = recipe.form.unit(w) * (above - below)[between]
         if thick.size:
             i = int(np.argmin(thick))
             found.append((float(thick[i]), float(theta[inside][between][i])))

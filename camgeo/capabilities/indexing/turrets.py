@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from abc import ABC, abstractmethod
-from typing import TYPE_CHECKING, ClassVar, NamedTuple
+from typing import TYPE_CHECKING, ClassVar, Literal, NamedTuple
 
 import numpy as np
 
@@ -15,8 +15,7 @@ from kin.numeric.records import dataclass
 if TYPE_CHECKING:
     from collections.abc import Callable
 
-    from camgeo.capabilities.indexing.index_recipe import Roller
-    from kin.indexing.intent import Form
+    from kin.indexing.forms import Form
     from kin.numeric.arrays import Array
 
 RIM = 1.5  # radii of a roller from its axis to the rim of a dial, in a drawing
@@ -36,6 +35,18 @@ class Drawn(NamedTuple):
     rim: Ring
     rollers: tuple[Ring, ...]
     way: int
+
+
+@dataclass(frozen=True)
+class Roller:
+    """A cylindrical roller that bears from `inner` to `outer` along its axis, mm.
+
+    These are distances from the axis of a barrel; of a globoid from that of its turret.
+    """
+
+    radius: float
+    inner: float
+    outer: float
 
 
 @dataclass(frozen=True)
@@ -109,7 +120,7 @@ class BarrelTurret(Turret):
     facing: ClassVar[float] = 0.0
     pitch: float
     offset: float
-    side: int
+    side: Literal[-1, 1]
 
     @property
     def sizes(self) -> dict[str, float]:

@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from camgeo.capabilities.indexing.bends import pose_over
-from camgeo.capabilities.indexing.spans import NAMES, angles_of, breaks_within, layers_of, span_of
+from camgeo.capabilities.indexing.spans import NAMES, angles_of, breaks_within, layers_of
 from camgeo.curve.curve import CurveError
 from kin.numeric.angles import TURN
 from kin.numeric.interval import Ball
@@ -52,16 +52,13 @@ def least_regular(flank: Flank) -> tuple[float, float, float]:
 
 
 def demand_regular(flank: Flank) -> None:
-    """Raise UndercutError where a flank is undercut in the metal, CurveError where neither is proved.
-
-    Raises TrackError as `span_of` does.
-    """
+    """Raise UndercutError where a flank is undercut in the metal, or where neither is proved."""
     least, at, layer = least_regular(flank)
     if least <= 0.0:
         raise UndercutError(f"the {NAMES[flank.side]} flank is undercut", at, layer)
-    corners = span_of(flank, np.array([flank.form.floor, flank.form.blank])).theta
     low, high = flank.form.reach(flank.radius)
-    begin, end = float(corners.min()), float(corners.max())
+    # behind an end face, too: a flank that turns back there might come back into the metal
+    begin, end = angles_of(flank)[[0, -1]].tolist()
     breaks = breaks_within(flank)
     count = math.ceil(CELLS * (end - begin) / TURN)
     theta = np.unique(np.concatenate([np.linspace(begin, end, count + 1), breaks[(breaks > begin) & (breaks < end)]]))

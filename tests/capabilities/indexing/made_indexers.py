@@ -26,7 +26,7 @@ BARREL = """cam:
   depth: 13
   turret: {stops: 6, radius: 60, roller: 9}
   motion: [{rise: 60, over: 150, law: cycloidal}, {dwell: 210}]
-part: {length: 90, bore: 24, keyway: din6885}
+part: {length: 80, bore: 24, keyway: din6885}
 export: {tolerance: 0.01, files: [stl]}
 """
 GLOBOID = """cam:

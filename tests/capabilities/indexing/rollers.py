@@ -13,7 +13,7 @@ import numpy as np
 if TYPE_CHECKING:
     from collections.abc import Callable, Sequence
 
-LOOKS = 61
+LOOKS = 41
 AROUND = 1.4  # rad on either side of a point in which a roller may touch it
 GOLDEN = 0.5 * (math.sqrt(5.0) - 1.0)
 TURN = 2.0 * math.pi
@@ -74,7 +74,7 @@ def globoid_away(distance: float, height: float) -> Callable[..., np.ndarray]:
 
 
 def nearest(
-    away: Callable[..., np.ndarray], motion: Indexed, points: np.ndarray, turns: int, steps: int = 60
+    away: Callable[..., np.ndarray], motion: Indexed, points: np.ndarray, turns: int, steps: int = 45
 ) -> np.ndarray:
     """Least distance (n,), mm, of points (n, 3) from the axes of all rollers at all shaft angles."""
 

@@ -109,7 +109,7 @@ def test_volumes() -> None:
     r = np.linspace(37.0, 50.0, 201)
     taken = float(np.trapezoid([removed(barrel, w) for w in r.tolist()][::20], r[::20]))
     bore = 0.0 if barrel.bore is None else barrel.bore.outline.area
-    assert volume(barrel) == pytest.approx(math.pi * 2500 * 90 - bore * 90 - taken, rel=1e-4)
+    assert volume(barrel) == pytest.approx(math.pi * 2500 * 80 - bore * 80 - taken, rel=1e-4)
 
 
 @pytest.mark.parametrize("text", [BARREL, GLOBOID], ids=["barrel", "globoid"])
@@ -118,20 +118,22 @@ def test_the_rib_is_thinnest_where_rollers_come_nearest_to_one_another(text: str
     design = shared_design(text)
     thin, at = rib_thickness(design)
     form, rollers = design.recipe.form, rollers_of(design, OVER[text])
-    found = []
+    there, elsewhere = [], []
     for w in (form.floor, 0.5 * (form.floor + form.blank), form.blank):
         low, high = (float(end) for end in form.ends(w))
         unit = 1.0 if text == BARREL else w
         h = np.linspace(low, high, 900)
-        for phi in at + np.radians(np.arange(-20.0, 20.0, 2.0)):
+        place = float(design.flanks["upper"].on(np.array([at]), w).phi[0])
+        for phi in (place, *(place + np.radians(np.arange(-45.0, 46.0, 5.0)))):
             near = WINDOW[(np.abs(WINDOW - phi) < 1.4)][::6]
             next_one = WINDOW[(np.abs(WINDOW - phi - math.tau) < 1.4)][::6]
             below = rollers.away(form.points(np.full(h.size, phi), h, w), near).min(axis=1)
             above = rollers.away(form.points(np.full(h.size, phi), h, w), next_one).min(axis=1)
             lower, upper = below < design.recipe.roller.radius, above < design.recipe.roller.radius
             if lower.any() and upper.any():
-                found.append(unit * float(h[upper].min() - h[lower].max()))
-    assert thin == pytest.approx(min(found), abs=0.2)
+                (there if phi == place else elsewhere).append(unit * float(h[upper].min() - h[lower].max()))
+    assert thin == pytest.approx(min(there), abs=0.15)
+    assert min(elsewhere) > thin - 0.15
 
 
 def test_curvature_is_that_of_the_gap_across_the_line() -> None:
@@ -227,10 +229,10 @@ def test_checks_and_remarks() -> None:
 
 def test_a_cam_too_short_for_its_turret_is_told() -> None:
     """Where no roller bears on a flank the check of the line of contact fails, and says what serves."""
-    text = changed(BARREL, ("length: 90", "length: 36"))
+    text = changed(BARREL, ("length: 80", "length: 36"))
     design = design_of(text)
     checks = {check.name: check for check in design_checks(design, figures_of(design))}
     assert not checks["contact-length"].ok
     assert "give more stops, or a longer cam" in checks["contact-length"].detail
-    longer = design_of(changed(text, ("length: 36", "length: 80")))
+    longer = design_of(changed(text, ("length: 36", "length: 76")))
     assert {check.name: check.ok for check in design_checks(longer, figures_of(longer))}["contact-length"]

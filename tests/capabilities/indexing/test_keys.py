@@ -23,7 +23,7 @@ if TYPE_CHECKING:
     from pathlib import Path
 
 SMALL = changed(
-    BARREL, ("stops: 6, radius: 60, roller: 9", "stops: 6, radius: 25, roller: 4"), ("length: 90", "length: 36")
+    BARREL, ("stops: 6, radius: 60, roller: 9", "stops: 6, radius: 25, roller: 4"), ("length: 80", "length: 36")
 )
 REFUSED = [
     (BARREL, ("radius: 50", "rdius: 50"), "cam.barrel.rdius: unknown key; did you mean radius?"),
@@ -133,6 +133,7 @@ REMEDIES = [
         ("roller: 20", "roller: {}"),
         0.5,
     ),
+    (BARREL, ("length: 80", "length: 90"), r"length of at most ([\d.]+) mm, with", ("length: 90", "length: {}"), 1.0),
     (
         BARREL,
         ("{radius: 50}", "{radius: 50, offset: 5}"),
@@ -140,24 +141,12 @@ REMEDIES = [
         ("offset: 5", "offset: {}"),
         2.4,
     ),
-    (BARREL, ("length: 90", "length: 110"), r"give less than ([\d.]+) mm, with", ("length: 110", "length: {}"), 0.95),
-    (BARREL, ("length: 90", "length: 140"), r"give less than ([\d.]+) mm, with", ("length: 140", "length: {}"), 0.95),
+    (BARREL, ("length: 80", "length: 110"), r"give less than ([\d.]+) mm, with", ("length: 110", "length: {}"), 0.85),
+    (BARREL, ("length: 80", "length: 140"), r"give less than ([\d.]+) mm, with", ("length: 140", "length: {}"), 0.85),
     (GLOBOID, ("length: 60", "length: 100"), r"give less than ([\d.]+) mm, with", ("length: 100", "length: {}"), 0.9),
     (GLOBOID, ("distance: 90", "distance: 60"), r"give more than ([\d.]+) mm", ("distance: 60", "distance: {}"), 1.2),
-    (
-        changed(BARREL, ("210", "270")),
-        ("over: 150", "over: 90"),
-        r"radius of at most ([\d.]+) mm",
-        ("roller: 9", "roller: {}"),
-        1.0,
-    ),
-    (
-        BARREL,
-        ("{radius: 50}", "{radius: 50, offset: 32}"),
-        r"radius of at most ([\d.]+)",
-        ("roller: 9", "roller: {}"),
-        1.0,
-    ),
+    (BARREL, ("roller: 9", "roller: 14"), r"radius of at most ([\d.]+) mm", ("roller: 14", "roller: {}"), 1.0),
+    (BARREL, ("cycloidal", "{uniform: {blend: 10}}"), r"radius of at most ([\d.]+)", ("roller: 9", "roller: {}"), 1.0),
     (
         changed(GLOBOID, ("240", "320")),
         ("over: 120", "over: 40"),
@@ -189,6 +178,21 @@ def test_rollers_that_meet_the_cam_behind_the_turret() -> None:
     offset = recipe_of(SMALL).turret.sizes["offset"]
     larger = changed(SMALL, ("radius: 25", "radius: 45"), ("{radius: 50}", f"{{radius: 50, offset: {offset + 20.0}}}"))
     design_of(larger)
+
+
+def test_a_length_that_does_not_serve_alone_is_not_offered() -> None:
+    """Where a shorter cam would be undercut, a longer step alone is."""
+    text = changed(BARREL, ("{radius: 50}", "{radius: 50, offset: 32}"))
+    with pytest.raises(RecipeErrors) as error:
+        design_of(text)
+    assert str(error.value).endswith("give a longer rise")
+    shorter = changed(BARREL, ("over: 150", "over: 90"), ("210", "270"))
+    with pytest.raises(RecipeErrors) as error:
+        design_of(shorter)
+    found = re.search(r"give a longer rise, or a length of at most ([\d.]+) mm", str(error.value))
+    assert found is not None
+    design_of(changed(shorter, ("length: 80", f"length: {found[1]}")))
+    design_of(changed(shorter, ("over: 90", "over: 180"), ("270", "180")))
 
 
 def test_rollers_that_leave_no_rib() -> None:
@@ -225,7 +229,7 @@ def test_an_indexing_cam_is_no_disc() -> None:
 
 def test_defaults_and_units() -> None:
     recipe = recipe_of(BARREL)
-    assert (recipe.roller.inner, recipe.roller.outer, recipe.turret.height) == (37.5, 50.0, 45.0)
+    assert (recipe.roller.inner, recipe.roller.outer, recipe.turret.height) == (37.5, 50.0, 40.0)
     assert recipe.start == pytest.approx(-math.pi / 6)
     assert recipe.turret.sizes["offset"] == pytest.approx(60.0 * (1.0 + math.cos(math.pi / 6)) / 2.0)
     assert recipe_of(changed(BARREL, ("roller: 9", "roller: 9, side: leading"))).turret.sizes["offset"] < 0.0
