@@ -20,6 +20,7 @@ if TYPE_CHECKING:
 
 RIM = 1.5  # radii of a roller from its axis to the rim of a dial, in a drawing
 HUB, SPOKE = 0.25, 0.4  # of the pitch radius, and of a roller's radius: hub and half width of spokes of a dial
+GAP = 0.2  # radii of a roller between a blank and the plate before it
 STUD, INNER_END = 0.7, 0.97  # of a roller's radius, and of the hub's: half width and inner end of the stud of a roller
 LESS = 0.999  # of a greatest length, in a remedy
 
@@ -47,6 +48,26 @@ class Roller:
     radius: float
     inner: float
     outer: float
+
+
+class Bar(NamedTuple):
+    """A round bar between two places (3,), mm, of a radius, mm."""
+
+    start: tuple[float, float, float]
+    end: tuple[float, float, float]
+    radius: float
+
+
+class Standing(NamedTuple):
+    """A turret as round bars: its body and its rollers, and its axis towards who looks along it, a unit vector.
+
+    Bars are in the turret's own axes: to the right and up as it is seen, and towards the viewer.
+    """
+
+    body: tuple[Bar, ...]
+    rollers: tuple[Bar, ...]
+    axis: tuple[float, float, float]
+    right: tuple[float, float, float]
 
 
 @dataclass(frozen=True)
@@ -100,6 +121,10 @@ class Turret(ABC):
     @abstractmethod
     def drawn(self, roller: Roller, stops: int, sense: float) -> Drawn:
         """Shapes to look at, of so many rollers; `sense` -1 of a cam that is mirrored."""
+
+    @abstractmethod
+    def standing(self, roller: Roller, stops: int, blank: float) -> Standing:
+        """Bars to look at, of so many rollers, beside a blank of a layer, mm."""
 
     @abstractmethod
     def intended(self, radius: float, depth: float) -> Form:
@@ -191,6 +216,16 @@ class BarrelTurret(Turret):
             -self.side * round(sense),
         )
 
+    def standing(self, roller: Roller, stops: int, blank: float) -> Standing:
+        """A plate before the cam, from which the rollers' studs reach towards its axis."""
+        angles = TURN * np.arange(stops) / stops
+        places = (self.pitch * np.column_stack([np.cos(angles), np.sin(angles)])).tolist()
+        near = max(roller.outer, blank) + GAP * roller.radius
+        plate = Bar((0.0, 0.0, near), (0.0, 0.0, near + roller.radius), self.pitch + RIM * roller.radius)
+        studs = tuple(Bar((x, y, roller.outer), (x, y, near), STUD * roller.radius) for x, y in places)
+        rollers = tuple(Bar((x, y, roller.inner), (x, y, roller.outer), roller.radius) for x, y in places)
+        return Standing((plate, *studs), rollers, (1.0, 0.0, 0.0), (0.0, 1.0, 0.0))
+
     def intended(self, radius: float, depth: float) -> Form:
         """Kin's barrel."""
         from kin.indexing.intent import Barrel
@@ -271,6 +306,21 @@ class GloboidTurret(Turret):
             tuple(across(low, high, half, angle) for angle in angles),
             -1,
         )
+
+    def standing(self, roller: Roller, stops: int, blank: float) -> Standing:
+        """A wheel that stands in the throat, with radial studs."""
+        half = roller.radius
+        hub = min(roller.inner, blank) - half
+        angles = (TURN * np.arange(stops) / stops).tolist()
+
+        def radial(low: float, high: float, radius: float, angle: float) -> Bar:
+            c, s = math.cos(angle), math.sin(angle)
+            return Bar((low * c, low * s, 0.0), (high * c, high * s, 0.0), radius)
+
+        wheel = Bar((0.0, 0.0, -half), (0.0, 0.0, half), hub)
+        studs = tuple(radial(INNER_END * hub, roller.inner, STUD * half, angle) for angle in angles)
+        rollers = tuple(radial(roller.inner, roller.outer, half, angle) for angle in angles)
+        return Standing((wheel, *studs), rollers, (0.0, -1.0, 0.0), (1.0, 0.0, 0.0))
 
     def intended(self, radius: float, depth: float) -> Form:
         """Kin's globoid."""

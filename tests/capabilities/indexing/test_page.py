@@ -1,10 +1,12 @@
-"""The page of an indexing cam: what it draws is where brute force has it, and its script draws the same.
+"""The page of an indexing cam: what it draws is where brute force has it, and its script draws the same; its glb.
 
-Holds: camgeo.capabilities.indexing.ribs, camgeo.capabilities.indexing.turning, camgeo.capabilities.indexing.charts.
+Holds: camgeo.capabilities.indexing.ribs, camgeo.capabilities.indexing.turning, camgeo.capabilities.indexing.charts,
+camgeo.capabilities.indexing.actors.
 """
 
 from __future__ import annotations
 
+import json
 import math
 import re
 from typing import TYPE_CHECKING
@@ -224,3 +226,76 @@ def test_the_script_draws_the_same(tmp_path: Path, text: str) -> None:
         assert browser.ask("document.documentElement.scrollWidth") <= 390
         assert not browser.problems
         assert not [each for each in browser.requests if not each.startswith("file:")]
+
+
+# --- glb --------------------------------------------------------------------------------------------------------------
+
+
+def turned(path: Path, name: str) -> np.ndarray:
+    """Points (steps, n, 3), mm, z upward, of a node at all its steps, by the rules of the format."""
+    data = path.read_bytes()
+    size = int.from_bytes(data[12:16], "little")
+    document, binary = json.loads(data[20 : 20 + size]), data[28 + size :]
+
+    def array(index: int) -> np.ndarray:
+        accessor = document["accessors"][index]
+        view = document["bufferViews"][accessor["bufferView"]]
+        wide = {"VEC3": 3, "VEC4": 4}[accessor["type"]]
+        return (
+            np.frombuffer(binary, "<f4", wide * accessor["count"], view["byteOffset"]).reshape(-1, wide).astype(float)
+        )
+
+    (node,) = (k for k, node in enumerate(document["nodes"]) if node["name"] == name)
+    (animation,) = document["animations"]
+    rows = {
+        channel["target"]["path"]: array(animation["samplers"][channel["sampler"]]["output"])
+        for channel in animation["channels"]
+        if channel["target"]["node"] == node
+    }
+    (part,) = document["meshes"][document["nodes"][node]["mesh"]]["primitives"]
+    points = array(part["attributes"]["POSITION"])
+    axis, real = rows["rotation"][:, None, :3], rows["rotation"][:, None, 3:]
+    once = np.cross(axis, points[None]) + real * points[None]
+    x, y, z = np.moveaxis(points[None] + 2.0 * np.cross(axis, once) + rows["translation"][:, None], -1, 0) * 1e3
+    return np.stack([x, -z, y], axis=-1)
+
+
+def written(text: str, tmp_path: Path) -> Path:
+    """The glb of a recipe."""
+    (tmp_path / "dial.yaml").write_text(changed(text, ("[stl]", "[{glb: {tolerance: 0.1}}]")), encoding="utf-8")
+    (file,) = camgeo.export(tmp_path / "dial.yaml", tmp_path).files
+    return file.path
+
+
+@pytest.mark.costly("solids of three cams")
+@pytest.mark.parametrize(
+    ("text", "side", "sense"), [(BARREL, 1.0, 1.0), (CCW + BARREL, 1.0, -1.0), (LEADING, -1.0, 1.0)]
+)
+def test_rollers_of_a_barrel_turn_beside_it_in_a_viewer(text: str, side: float, sense: float, tmp_path: Path) -> None:
+    """Their axes are parallel to x, from 37.5 to 50 mm; y is offset - side l cos psi, and -y of a mirrored cam."""
+    path = written(text, tmp_path)
+    found, cam = turned(path, "rollers"), turned(path, "cam")
+    assert len(found) == 361
+    offset = side * 30.0 * (1.0 + math.cos(math.pi / 6.0))
+    for step in (0, 50, 150):
+        psi = -math.pi / 6.0 + advance(np.array([math.radians(step)]), 6, 150.0)[0] + math.tau * np.arange(6) / 6.0
+        wanted = np.column_stack(
+            [np.full(6, 43.75), sense * (offset - side * 60.0 * np.cos(psi)), 40.0 + 60.0 * np.sin(psi)]
+        )
+        middles = found[step].reshape(6, -1, 3).mean(axis=1)
+        assert np.linalg.norm(wanted[:, None] - middles[None], axis=2).min(axis=1).max() < 1e-3
+        assert [found[step, :, 0].min(), found[step, :, 0].max()] == pytest.approx([37.5, 50.0], abs=1e-3)
+    # of its eight steps the second is a quarter of a turn: what was at the polar angle 90 degrees stands at 0
+    x, y, _ = cam[0].T
+    np.testing.assert_allclose(cam[2][:, :2], np.column_stack([sense * y, -sense * x]), atol=1e-3)
+
+
+@pytest.mark.costly("the solid of a cam")
+def test_rollers_of_a_globoid_turn_in_its_throat_in_a_viewer(tmp_path: Path) -> None:
+    """At psi from the turret's centre, 90 mm off along x, towards -cos psi and, up, sin psi."""
+    found = turned(written(CCW + GLOBOID, tmp_path), "rollers")
+    for step in (0, 40, 100):
+        psi = -math.pi / 8.0 + advance(np.array([math.radians(step)]), 8, 120.0)[0] + math.tau * np.arange(8) / 8.0
+        wanted = np.column_stack([90.0 - 55.5 * np.cos(psi), np.zeros(8), 30.0 + 55.5 * np.sin(psi)])
+        middles = found[step].reshape(8, -1, 3).mean(axis=1)
+        assert np.linalg.norm(wanted[:, None] - middles[None], axis=2).min(axis=1).max() < 1e-3
