@@ -4,7 +4,6 @@ function playIndexer(data, kept = null) {
   const cam = (kept || document).querySelector("#drawing .indexer");
   if (kept) for (const path of cam.querySelectorAll("path:not(.metal)")) path.remove();
   const paths = [...cam.querySelectorAll("path")];
-  const developed = document.querySelectorAll("#development .roller-at");
   const TURN = 2 * Math.PI;
   const HALF = 0.5 * Math.PI;
   const { sense, places, length, upright } = data;
@@ -38,6 +37,8 @@ function playIndexer(data, kept = null) {
     };
   });
   const rollers = data.rollers.map(({ beside, z }) => ({ beside: along(beside), z: along(z) }));
+  // none beyond those that it has: a picture comes before its development, beside that of another cam
+  const developed = [...document.querySelectorAll("#development .roller-at")].slice(0, 3 * rollers.length);
   const scale = places / TURN;
 
   // whole turns in which the rib passes between two places, and between which places of the unrolled turn
