@@ -21,9 +21,9 @@ if TYPE_CHECKING:
     from camgeo.capabilities.indexing.flank import Flank
     from kin.numeric.arrays import Array
 
-PLACES = 180  # of a turn, at which heights are known
+PLACES = 120  # of a turn, at which heights are known
 LOOKS = 720  # shaft angles of a turn at which flanks are computed
-DEEP = 4  # layers from the floor to the blank, of which the blank is the last
+DEEP = 6  # layers from the floor to the blank, of which the blank is the last
 RISE = 64  # parts of the length, between which a layer's distance from the cam's axis is known
 UPRIGHT = 6  # parts of an edge from the bottom of a rib to its top
 HALF = 0.5 * math.pi

@@ -195,7 +195,7 @@ def test_curves_of_the_turret_and_of_engaged_rollers() -> None:
         assert unpacked(series)[500] == 2.0
 
 
-@pytest.mark.costly("a page with the cam on five layers")
+@pytest.mark.costly("a page with the cam on seven layers")
 def test_a_page_asks_for_nothing(tmp_path: Path) -> None:
     (tmp_path / "dial.yaml").write_text(changed(BARREL, ("[stl]", "[html]")), encoding="utf-8")
     assert camgeo.export(tmp_path / "dial.yaml", tmp_path / "out").ok
