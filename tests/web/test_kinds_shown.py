@@ -254,7 +254,7 @@ def test_a_cam_with_fewer_rollers_follows_another(desk: tab.Tab) -> None:
     """Its picture is there before its development, which is still that of the other cam."""
     for name in ("cylindrical/drum-rib", "cylindrical/drum-groove", "indexing/index-barrel", "indexing/index-globoid"):
         desk.load("cam", shipped(name))
-        assert desk.text_of("verdict") == "every check of the design holds"
+        assert desk.text_of("verdict").startswith("every check of the design holds")
     assert desk.ask("document.querySelector('#development') === null")
     assert desk.browser.problems == []
 

@@ -85,7 +85,7 @@ def _ribs(design: IndexDesign, tall: float) -> list[Array]:
     """Outlines (n, 2), px, of the rib on the blank."""
     of, found = layer(design, design.recipe.form.blank), []
     for whole, begin, end in of.spans(0.0, PLACES):
-        place = np.arange(math.ceil(begin), math.floor(end) + 1)
+        place = np.arange(math.ceil(begin), math.floor(end) + 1, dtype=float)
         bottom, top = of.heights(place)
         share = place / PLACES - whole * 1.0
         edges = [_placed(design, share, z, tall) for z in (bottom, top)]
