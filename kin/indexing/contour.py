@@ -14,7 +14,6 @@ from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
-from kin.indexing.faces import quartered
 from kin.indexing.rollers import Worst
 from kin.numeric.angles import TURN
 from kin.numeric.records import dataclass
@@ -24,9 +23,10 @@ if TYPE_CHECKING:
     from kin.indexing.rollers import Rollers
     from kin.numeric.arrays import Array, Indices, Mask
 
-OPEN = 0.1  # of the tolerance: what the proof may leave open
-ROUNDS = 7  # of dividing triangles
-MOST_PARTS = 400_000  # triangles at a time while dividing
+OPEN = 0.2  # of the tolerance: what the proof may leave open
+PLAIN = 0.5  # of the tolerance: a bound below it need not be closer
+ROUNDS = 24  # of dividing triangles
+MOST_PARTS = 2_000_000  # triangles at a time while dividing
 APART = 0.1  # rad: worst angles of a triangle's corners that are farther apart are not of one place of a flank
 
 
@@ -124,7 +124,7 @@ def bare(rollers: Rollers, body: Body, known: Known, which: Indices) -> Peak:
     value, at = float(known.distance[place]), float(known.worst.theta[place])
     triangles, theta = body.points[corners], known.worst.theta[corners]
     theta = theta[:, :1] + np.remainder(theta - theta[:, :1] + math.pi, TURN) - math.pi
-    bound, goal = value, value + OPEN * rollers.tolerance
+    bound, goal = value, max(value + OPEN * rollers.tolerance, PLAIN * rollers.tolerance)
     for turn in range(ROUNDS + 1):
         strayed = np.flatnonzero(np.ptp(theta, axis=1) > APART)
         if len(strayed) and turn:
@@ -135,18 +135,29 @@ def bare(rollers: Rollers, body: Body, known: Known, which: Indices) -> Peak:
         bound = max(bound, float(off[~left].max(initial=-math.inf)))
         if not left.any():
             break
-        if turn == ROUNDS or 4 * np.count_nonzero(left) > MOST_PARTS:
+        if turn == ROUNDS or 2 * np.count_nonzero(left) > MOST_PARTS:
             bound = max(bound, float(off.max()))
             break
-        triangles, theta = quartered(triangles[left]), quartered(theta[left])
+        triangles, theta = _halved(triangles[left], theta[left])
     return Peak(value, max(0.0, bound - value), at)
+
+
+def _halved(triangles: Array, theta: Array) -> tuple[Array, Array]:
+    """Triangles (t, 3, 3) and angles at their corners (t, 3), in two by the side over which the angle goes most."""
+    first = np.abs(theta - np.roll(theta, -1, axis=1)).argmax(axis=1)
+    rows = np.arange(len(theta))
+    a, b, c = ((triangles[rows, (first + k) % 3], theta[rows, (first + k) % 3]) for k in range(3))
+    middle = tuple(0.5 * (one + other) for one, other in zip(a, b, strict=True))
+    parts = [(a, middle, c), (middle, b, c)]
+    places, angles = (np.concatenate([np.stack([at[k] for at in part], axis=1) for part in parts]) for k in range(2))
+    return places, angles
 
 
 def _farthest(rollers: Rollers, triangles: Array, theta: Array) -> Array:
     """Bound (t,), mm, of how far triangles (t, 3, 3) are from rollers, by corners at an angle between theirs (t, 3)."""
-    middle = np.repeat(0.5 * (theta.min(axis=1) + theta.max(axis=1)), 3)
-    met = rollers.at(triangles.reshape(-1, 3), middle)
-    off = rollers.distance(met.excess, rollers.own(met)).reshape(-1, 3)
-    psi = met.psi.reshape(-1, 3)
-    one = np.ptp(psi, axis=1) < 0.5 * rollers.intent.pitch
-    return np.where(one, off.max(axis=1), np.inf)
+    one, other, third = theta.T
+    low, high = np.minimum(np.minimum(one, other), third), np.maximum(np.maximum(one, other), third)
+    middle = np.repeat(0.5 * (low + high), 3)
+    off, psi = (row.reshape(-1, 3) for row in rollers.near(triangles.reshape(-1, 3), middle))
+    one = np.abs(psi - psi[:, :1]).max(axis=1) < 0.5 * rollers.intent.pitch
+    return np.where(one, np.maximum(np.maximum(off[:, 0], off[:, 1]), off[:, 2]), np.inf)

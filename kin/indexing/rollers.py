@@ -31,10 +31,11 @@ if TYPE_CHECKING:
     from kin.numeric.arrays import Array, Indices
 
 REACH = 1.25  # of the radius of a roller: an axis farther off is out of reach
-FINE = 0.02  # of the tolerance, to which a least distance is known
+FINE = 0.1  # of the tolerance, to which a least distance is known
 PARTS = 4  # of a step, into which it is divided
+SHALLOW = 0.1  # of the tolerance: edges that reach no deeper than this below their ends are not looked at
 NEVER = 1e9  # mm^2: the excess of a point that no roller comes near
-CLOSE = 2  # of the finest steps: so near its angle the excess need not grow
+CLOSE = 6  # of the finest steps: so near its angle the excess need not grow
 PAIRS = 60_000  # of a point and an angle, at a time
 MOST_LEVELS = 7
 
@@ -148,6 +149,20 @@ class Rollers:
         radius = np.where(d > 0.0, self.radii[1], self.radii[0])
         return Met(one**2 + other**2 - radius**2, np.hypot(u, v), y, d, x, psi)
 
+    def near(self, points: Array, theta: Array) -> tuple[Array, Array]:
+        """Distance (n,) of points (n, 3) from what rollers sweep, mm, at one of the finest angles next to theirs (n,).
+
+        With it comes the angle of the roller, rad.
+        """
+        nodes = np.remainder(np.rint(theta / self.finest).astype(np.intp), len(self._table) // 2)[:, None]
+        y, u, v, psi = self._turned(points, nodes)
+        off = np.arctan2(v, u) - psi
+        squares = self._squares(off)
+        psi += self.intent.pitch * np.rint(off * (1.0 / self.intent.pitch))
+        one, other = self.intent.form.beside(y, u, v, psi)
+        distance = np.sqrt(one * one + other * other) - np.sqrt(squares)
+        return np.asarray(distance[:, 0]), psi[:, 0]
+
     def own(self, met: Met) -> Array:
         """Radius (n,) of the gauge of the flank that each point would be on, mm."""
         return np.asarray(np.where(met.d > 0.0, self.radii[1], self.radii[0]))
@@ -165,7 +180,8 @@ class Rollers:
     def edges(self, start: Array, last: Array, worst: tuple[Worst, Worst]) -> Worst:
         """Edges between points (n, 3), (n, 3) that are `worst` at both ends, each at its least excess.
 
-        They are no longer than `longest`. Edges that are not worse than their ends are told with those.
+        They are no longer than `longest`. Edges that are not worse than their ends are told with those, and edges that
+        cannot be worse than their ends by more than a share of the tolerance are not looked at.
         """
         one, other = worst
         way = other.theta - one.theta
@@ -175,26 +191,34 @@ class Rollers:
         along = last - start
         across = np.sqrt(self.intent.form.across(along, np.sin(middle), np.cos(middle), psi))
         turned = np.linalg.norm(along, axis=1) * self.intent.form.turning(float(self.turning.fastest[0].max()))
+        least, opened = np.minimum(one.excess, other.excess), np.maximum(one.open, other.open)
+        at = np.where(one.excess <= other.excess, one.theta, other.theta)
         rate = np.sqrt(np.maximum(np.minimum(one.growth, other.growth), 0.0)) - 0.5 * turned
         near = CLOSE * self.finest
-        with np.errstate(divide="ignore"):
-            beyond = np.where(rate > 0.0, (0.5 * (across + turned * (wide + near))) / np.maximum(rate, 1e-9), TURN)
+        side = 0.5 * (across + turned * (wide + near))
+        with np.errstate(divide="ignore", invalid="ignore"):
+            beyond = np.where(rate > 0.0, side / np.maximum(rate, 1e-9), TURN)
+            # the least of growth x^2 less (side + turned x/2)^2 over all x
+            more = 0.25 * turned**2 / np.maximum(rate * (rate + turned), 1e-18)
+            deeper = np.where(rate > 0.0, side**2 * (1.0 + more), np.inf)
         wide = np.minimum(wide + near + beyond, 0.25 * TURN)
+        shallow = 2.0 * float(self.radii.min()) * SHALLOW * self.tolerance
+        asked = np.flatnonzero(deeper > shallow + np.maximum(least - opened, 0.0))
+        found = Worst(at, least.copy(), opened + np.where(np.isfinite(deeper), deeper, 0.0), np.zeros_like(at))
+        if not len(asked):
+            return found
+        start, last, middle, wide = start[asked], last[asked], middle[asked], wide[asked]
         level = max(0, min(self.levels, int(math.log(TURN / STEPS / max(float(np.median(wide)), 1e-9), PARTS)) + 1))
-        found = self._least(
+        seen = self._least(
             middle - wide, middle + wide, level, lambda own, nodes: self._edges(start[own], last[own], nodes)
         )
-        better = np.where(one.excess <= other.excess, 0, 1)
-        least = np.minimum(one.excess, other.excess)
-        at = np.where(better == 0, one.theta, other.theta)
-        opened = np.maximum(one.open, other.open)
-        worse = found.excess < least
-        return Worst(
-            np.where(worse, found.theta, at),
-            np.minimum(found.excess, least),
-            np.maximum(np.where(worse, found.open, opened), np.minimum(opened, least - found.excess + opened)),
-            found.growth,
-        )
+        worse = seen.excess < least[asked]
+        found.theta[asked] = np.where(worse, seen.theta, at[asked])
+        found.excess[asked] = np.minimum(seen.excess, least[asked])
+        # what an end leaves open counts where the edge is not seen to be worse
+        lowest = np.minimum(seen.excess - seen.open, least[asked] - opened[asked])
+        found.open[asked] = found.excess[asked] - lowest
+        return found
 
     def _turned(self, points: Array, nodes: Indices) -> tuple[Array, Array, Array, Array]:
         """Coordinates y, u and v (n, m) of points (n, 3) at numbers of angles (n, m), and the turret's angle."""
@@ -271,12 +295,13 @@ class Rollers:
             least = np.where(better, values[rows, column], least)
             at = np.where(better, nodes[rows, column], at)
             within = np.minimum(values[:, :-1], values[:, 1:])
-            within -= self._falls[level].take(folded[:, :-1] // each % STEPS)
+            falls = self._falls[level].take(folded[:, :-1] // each % STEPS)
+            within -= falls
             beyond = columns[1:] > count[:, None]
             within[beyond] = NEVER
             if level == self.levels:
                 break
-            may = within <= (least + self._falls[level].max())[:, None]  # so that the rest tells how the excess grows
+            may = within <= least[:, None] + falls  # so that the rest tells how the excess grows
             head, tail = may.argmax(axis=1), may.shape[1] - may[:, ::-1].argmax(axis=1)
             kept.append((within, nodes, spacing, (columns[:-1] >= head[:, None]) & (columns[:-1] < tail[:, None])))
             start, count, level = nodes[rows, head], (tail - head) * PARTS, level + 1

@@ -18,6 +18,8 @@ from camgeo.files.errors import RegionError
 from kin.numeric.arrays import paired
 
 if TYPE_CHECKING:
+    from collections.abc import Callable
+
     from kin.numeric.arrays import Array, Indices
 
 CROSSED = "two lines in a layer of the cam cross"
@@ -55,17 +57,17 @@ def band(x: Array, y: Array, lower: Indices, upper: Indices) -> Indices:
     found: list[tuple[int, int, int]] = []
     front = [low[0]]
 
-    def sine(a: int, b: int, c: int) -> float:
-        ux, uy, vx, vy = along[b] - along[a], up[b] - up[a], along[c] - along[a], up[c] - up[a]
-        size = ((ux * ux + uy * uy) * (vx * vx + vy * vy)) ** 0.5
-        return (ux * vy - uy * vx) / size if size else 0.0
+    def sharpest(a: int, b: int, c: int) -> float:
+        sizes = [math.hypot(along[q] - along[p], up[q] - up[p]) for p, q in ((a, b), (b, c), (c, a))]
+        turn = (along[b] - along[a]) * (up[c] - up[a]) - (along[c] - along[a]) * (up[b] - up[a])
+        product = sizes[0] * sizes[1] * sizes[2]
+        return turn * min(sizes) / product if product else 0.0
 
     def cut(least: float, *, start: bool) -> None:
         while len(front) > 2:
             a, b, c = (front[1], front[0], front[2]) if start else (front[-3], front[-1], front[-2])
             alike = (a in below) == (b in below) == (c in below)
-            turn = min(sine(a, b, c), sine(b, c, a), sine(c, a, b))
-            if not turn > (least if alike else FLAT):
+            if not sharpest(a, b, c) > (least if alike else FLAT):
                 return
             found.append((a, b, c))
             del front[1 if start else -2]
@@ -76,21 +78,23 @@ def band(x: Array, y: Array, lower: Indices, upper: Indices) -> Indices:
         else:
             front.append(k)
         cut(SHARP, start=which == 0)
-    _close([*front, low[-1]], found, sine)
+    _close([*front, low[-1]], found, sharpest)
     return np.array(found, dtype=np.intp).reshape(-1, 3)
 
 
-def _close(loop: list[int], found: list[tuple[int, int, int]], sine) -> None:  # type: ignore[no-untyped-def]
-    """Cut the corners of what is left, the sharpest last: a loop, clockwise, whose points a front and its end are."""
-    loop = loop[::-1]
+def _close(front: list[int], found: list[tuple[int, int, int]], sharpest: Callable[[int, int, int], float]) -> None:
+    """Cut the corners of what is left, the widest first: a loop, clockwise, of a front and the lines' last point.
+
+    `sharpest` gives the least sine of a triangle's corners, below 0 where it is turned over.
+    """
+    loop = list(reversed(front))
     while len(loop) > 2:
         best, at = FLAT, -1
         n = len(loop)
         for i in range(n):
-            a, b, c = loop[i - 1], loop[i], loop[(i + 1) % n]
-            turn = min(sine(a, b, c), sine(b, c, a), sine(c, a, b))
-            if turn > best:
-                best, at = turn, i
+            least = sharpest(loop[i - 1], loop[i], loop[(i + 1) % n])
+            if least > best:
+                best, at = least, i
         if at < 0:
             raise RegionError(CROSSED)
         found.append((loop[at - 1], loop[at], loop[(at + 1) % n]))
@@ -98,13 +102,13 @@ def _close(loop: list[int], found: list[tuple[int, int, int]], sine) -> None:  #
 
 
 def filled(
-    phi: Array, h: Array, lower: Indices, upper: Indices, scale: tuple[float, float], wide: tuple[float, float]
+    places: tuple[Array, Array], lower: Indices, upper: Indices, scale: tuple[float, float], wide: tuple[float, float]
 ) -> Filled:
-    """The band between two lines of points at polar angles, rad, and heights (n,); as `band` raises.
+    """The band between two lines of points at `places`: polar angles, rad, and heights (n,); as `band` raises.
 
     `scale` has the lengths of both units, mm. No edge but those of the lines spans more than `wide`.
     """
-    known = phi.size
+    (phi, h), known = places, places[0].size
     phi, h, lines = _between(phi, h, lower, upper, wide)
     found = [band(phi * scale[0], h * scale[1], low, high) for low, high in pairwise(lines)]
     triangles = np.concatenate(found)

@@ -3,9 +3,9 @@
 A line holds for its radius alone. It runs from one end face to the other, over more than a turn, and is drawn in pieces
 of one turn, from x = 0 to the circumference.
 
-On a cylinder a flank is p(theta, rho(theta)). With p_ij of `camgeo.capabilities.indexing.bends`, q = p_11 + 2 p_12 rho' +
-p_22 rho'^2 and the unit vector o away from the cam's axis, the second derivative of the unrolled line is that part of
-q + p_2 rho'' which is square to o, where p_2.o rho'' = -r phi'^2 - q.o.
+On a cylinder a flank is p(theta, rho(theta)). With p_ij of `camgeo.capabilities.indexing.bends`, the sum
+q = p_11 + 2 p_12 rho' + p_22 rho'^2 and the unit vector o away from the cam's axis, the second derivative of the
+unrolled line is that part of q + p_2 rho'' which is square to o, where p_2.o rho'' = -r phi'^2 - q.o.
 """
 
 from __future__ import annotations
@@ -47,7 +47,7 @@ MARKS = "TURN"  # end of the name of the layer whose marks enclose a turn
 
 
 class Line(NamedTuple):
-    """A line of a development: where it is, its pieces (n, 2) each, mm, and the bound, mm, of their distance from it."""
+    """A line of a development: where it is, its pieces (n, 2), mm, and the bound, mm, of their distance from it."""
 
     of: Developed
     pieces: list[Array]

@@ -1,7 +1,7 @@
 """Forms of an indexing cam: where its layers lie, and how a roller runs past it.
 
 The cam stands still, its axis is z; the turret runs round it by the shaft angle theta. e_r, e_t and k are the axes of
-the cam's cylindrical frame at theta, and psi is the angle of a roller on the pose. Along a roller g points to rising
+the cam's cylindrical frame at theta, and psi is the angle of a roller on the turret. Along a roller g points to rising
 rho, and m is square to it and to e_t:
 
     barrel    g = e_r, m = k;   axis rho e_r + y e_t + z k,   y = offset - s l cos psi,   z = H + l sin psi
@@ -31,7 +31,7 @@ from kin.numeric.records import dataclass
 if TYPE_CHECKING:
     from typing import Literal
 
-    from kin.numeric.arrays import Array, Indices
+    from kin.numeric.arrays import Array, Indices, Mask
 
 MARGIN = 0.1  # rad
 WIDEST = math.pi / 3.0  # polar angle that a triangle may span, however coarse
@@ -148,7 +148,7 @@ class Barrel:
 
     def twist(self, pose: Pose, sine: Number, cosine: Number) -> Number:
         """Part along g of the derivative of tau by theta, for the contact's angle by sine and cosine."""
-        return cosine * -1.0 + pose.sine * 0.0
+        return cosine * -1.0 + (pose.sine + sine) * 0.0
 
     def axes(self, pose: Pose, sine: Number, cosine: Number) -> tuple[Vector, Vector, Vector]:
         """Vectors g, tau and n along e_r, e_t and k, for the contact's angle by sine and cosine."""
@@ -195,6 +195,7 @@ class Barrel:
 
     def unit(self, w: float) -> float:
         """Length, mm, of a unit of h in a layer w, mm."""
+        del w
         return 1.0
 
     def rim(self, w: float) -> float:
@@ -215,7 +216,7 @@ class Barrel:
             min(math.asin(min(high, 1.0)) + MARGIN, quarter),
         )
 
-    def meets(self, psi: Array, radius: float) -> Array:
+    def meets(self, psi: Array, radius: float) -> Mask:
         """Whether a roller of a radius, mm, at angles on the turret (n,), rad, is within the box about the cam (n,)."""
         y = self.offset - self.side * self.pitch * np.cos(psi)
         z = self.height + self.pitch * np.sin(psi)
@@ -321,7 +322,7 @@ class Globoid:
     def height_of(self, place: Vector) -> Array:
         """Heights h (n,) of places along e_r, e_t and k."""
         x, y, z = place
-        return np.arctan2(z - self.height, self.distance - np.hypot(x, y))
+        return np.asarray(np.arctan2(z - self.height, self.distance - np.hypot(x, y)))
 
     def points(self, phi: Array, h: Array, w: Array | float) -> Array:
         """Points (n, 3), mm, at polar angles and heights (n,) in layers w, mm."""
@@ -361,7 +362,7 @@ class Globoid:
             min(math.asin(min(high, 1.0)) + more, quarter),
         )
 
-    def meets(self, psi: Array, radius: float) -> Array:
+    def meets(self, psi: Array, radius: float) -> Mask:
         """Whether a roller at angles on the turret (n,), rad, is on the cam's side of it (n,)."""
         del radius
         return np.asarray(np.cos(psi) > 0.0)

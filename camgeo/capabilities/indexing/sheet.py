@@ -2,14 +2,15 @@
 
 Where a flank enters at the lower end face and leaves at the upper one, columns end on that face. The breaks of the
 motion, and the corners of the flank, lie on columns. Two columns are joined from the floor to the blank in the order of
-their layers. Where an end is met twice at one shaft angle, the columns before it lean instead, so that the last one lies
-in the end face. Each triangle lies in a box of shaft angles and rho, whose bound is proved
+their layers. Where an end is met twice at one shaft angle, the columns before it lean instead, so that the last one
+lies in the end face. Each triangle lies in a box of shaft angles and rho, whose bound is proved
 (`camgeo.capabilities.indexing.bends`).
 """
 
 from __future__ import annotations
 
 import math
+from itertools import pairwise
 from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
@@ -265,7 +266,7 @@ def _net(flank: Flank, shape: _Shape, nominal: Array, rows: int) -> _Net:
         raise CurveError("the roller does not touch a layer of the cam", float(at[~np.isfinite(rho)][0]))
     share = np.abs(layer - floor)
     found = []
-    for left, right in zip(columns[:-1], columns[1:], strict=True):
+    for left, right in pairwise(columns):
         if left.size == right.size and np.array_equal(layer[left[1:-1]], layer[right[1:-1]]):
             a, b, c, d = left[:-1], left[1:], right[:-1], right[1:]
             found += [np.column_stack([a, b, c]), np.column_stack([d, c, b])]

@@ -104,11 +104,12 @@ def index_mesh(design: IndexDesign, tolerance: float, precision: Precision) -> t
     sheets = {name: sheet_of(flank, fine, wide) for name, flank in design.flanks.items()}
     walls = {name: _wall(body, form, sheet) for name, sheet in sheets.items()}
     lower, upper = walls["lower"], walls["upper"]
-    mouths = [_arc(body, form, form.floor, (k, upper.floor, lower.floor), (0.0, 0.0), wide[0]) for k in range(2)]
-    rims = [_arc(body, form, form.blank, (k, lower.blank, upper.blank), (-TURN, 0.0), wide[0]) for k in range(2)]
-    off = _fill(body, form, form.floor, mouths[0].then(lower.floor), upper.floor.then(mouths[1]), wide)
+    floor, blank = (form, form.floor), (form, form.blank)
+    mouths = [_arc(body, floor, (k, upper.floor, lower.floor), 0.0, wide[0]) for k in range(2)]
+    rims = [_arc(body, blank, (k, lower.blank, upper.blank), -TURN, wide[0]) for k in range(2)]
+    off = _fill(body, floor, mouths[0].then(lower.floor), upper.floor.then(mouths[1]), wide)
     rib = rims[0].then(upper.blank), lower.blank.turned(-TURN).then(rims[1])
-    off = max(off, _fill(body, form, form.blank, *rib, wide))
+    off = max(off, _fill(body, blank, *rib, wide))
     if off > fine:
         raise ToleranceError(f"blank and floor are not within {tolerance:.3g} mm", off)
     bore_low, bore_high, bore_off = _bore(body, design, tolerance)
@@ -140,17 +141,12 @@ def _wall(body: _Body, form: Barrel | Globoid, sheet: Sheet) -> _Wall:
 
 
 def _arc(
-    body: _Body,
-    form: Barrel | Globoid,
-    w: float,
-    between: tuple[int, _Line, _Line],
-    turn: tuple[float, float],
-    wide: float,
+    body: _Body, layer: tuple[Barrel | Globoid, float], between: tuple[int, _Line, _Line], turn: float, wide: float
 ) -> _Line:
-    """The edge of a layer with an end face, 0 or 1, from the end of one line to that of another, both turned."""
-    k, first, last = between
+    """The edge of a layer with an end face, 0 or 1, from the end of one line, turned, to that of another."""
+    (form, w), (k, first, last) = layer, between
     a, b = -k, -k
-    begin, end = float(first.phi[a]) + turn[0], float(last.phi[b]) + turn[1]
+    begin, end = float(first.phi[a]) + turn, float(last.phi[b])
     count = max(1, math.ceil((end - begin) / wide))
     phi = np.linspace(begin, end, count + 1)
     height = float(form.ends(w)[k])
@@ -161,15 +157,16 @@ def _arc(
 
 
 def _fill(
-    body: _Body, form: Barrel | Globoid, w: float, lower: _Line, upper: _Line, wide: tuple[float, float]
+    body: _Body, layer: tuple[Barrel | Globoid, float], lower: _Line, upper: _Line, wide: tuple[float, float]
 ) -> float:
     """Add the band of a layer between two lines; the bound of its distance from the layer, mm."""
+    form, w = layer
     phi = np.concatenate([lower.phi, upper.phi[1:-1]])
     h = np.concatenate([lower.h, upper.h[1:-1]])
     number = np.concatenate([lower.number, upper.number[1:-1]])
     n, m = lower.number.size, upper.number.size
     above = np.concatenate([[0], np.arange(n, n + m - 2), [n - 1]]).astype(np.intp)
-    made = filled(phi, h, np.arange(n), above, (form.rim(w), form.unit(w)), wide)
+    made = filled((phi, h), np.arange(n), above, (form.rim(w), form.unit(w)), wide)
     number = np.concatenate([number, body.add(form.points(made.phi, made.h, w))])
     body.triangles.append(number[made.triangles])
     phi, h = np.concatenate([phi, made.phi]), np.concatenate([h, made.h])

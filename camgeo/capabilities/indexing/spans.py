@@ -152,7 +152,7 @@ def layers_at(flank: Flank, theta: Array, z: float) -> Array:
 
 
 def demand_clear(flank: Flank) -> None:
-    """Raise TrackError where a roller that has left at an end face comes near the cam again behind the pose."""
+    """Raise TrackError where a roller that has left at an end face comes near the cam again behind the turret."""
     psi = np.linspace(0.0, math.pi, 721)
     form = flank.form
     for sign, name in ((1.0, "upper"), (-1.0, "lower")):

@@ -44,7 +44,7 @@ class Cycloids:
     def __init__(self, rise: float, over: float) -> None:
         self.rise, self.over = math.radians(rise), math.radians(over)
 
-    def derivatives(self, theta: Any, order: int, at: int = 1) -> np.ndarray:
+    def derivatives(self, theta: Any, order: int, _side: int = 1) -> np.ndarray:
         u, l, h = np.asarray(theta) / self.over, self.over, self.rise
         a = 2.0 * np.pi * u
         rows = [h * (u - np.sin(a) / TURN), h / l * (1.0 - np.cos(a)), h * TURN / l**2 * np.sin(a)]
@@ -56,16 +56,15 @@ WORKED_GLOBOID = Globoid(49.0, 14.0, 90.0, 0.0, 60.0)
 
 
 @pytest.mark.parametrize(
-    ("theta", "rho", "side", "r", "phi", "angle", "z"),
+    ("place", "wanted"),
     [
-        (40.0, 44.0, -1, 45.1822706308, 53.1360149742, 36.024213112, -31.2009649506),
-        (75.0, 36.0, 1, 36.7129404979, 63.690067526, 53.130102354, 5.4),
-        (110.0, 44.0, 1, 44.0195752172, 111.708771914, 24.013065794, 32.1431223568),
+        ((40.0, 44.0, -1), (45.1822706308, 53.1360149742, 36.024213112, -31.2009649506)),
+        ((75.0, 36.0, 1), (36.7129404979, 63.690067526, 53.130102354, 5.4)),
+        ((110.0, 44.0, 1), (44.0195752172, 111.708771914, 24.013065794, 32.1431223568)),
     ],
 )
-def test_a_barrel_as_worked_by_hand(
-    theta: float, rho: float, side: int, r: float, phi: float, angle: float, z: float
-) -> None:
+def test_a_barrel_as_worked_by_hand(place: tuple[float, float, int], wanted: tuple[float, ...]) -> None:
+    (theta, rho, side), (r, phi, angle, z) = place, wanted
     flank = Flank(WORKED_BARREL, Cycloids(60.0, 150.0), math.radians(-30.0), 9.0, side)  # type: ignore[arg-type]
     at = np.array([math.radians(theta)])
     found = flank.along(at, np.array([rho]))
@@ -78,18 +77,19 @@ def test_a_barrel_as_worked_by_hand(
     # the force on the roller's way: arm formula (l psi' + s rho sin psi)/(rho cos psi)
     psi, rate = flank.law.derivatives(at, 1)
     psi = psi[0] + flank.start
-    wanted = (60.0 * rate[0] + rho * math.sin(psi)) / (rho * math.cos(psi))
-    assert math.tan(flank.pressure(at, np.array([rho]))[0]) == pytest.approx(wanted, rel=1e-12)
+    steep = (60.0 * rate[0] + rho * math.sin(psi)) / (rho * math.cos(psi))
+    assert math.tan(flank.pressure(at, np.array([rho]))[0]) == pytest.approx(steep, rel=1e-12)
 
 
 @pytest.mark.parametrize(
-    ("theta", "rho", "side", "r", "phi", "z"),
+    ("place", "wanted"),
     [
-        (40.0, 62.0, -1, 31.586482771, 51.1074062696, -19.7321477863),
-        (60.0, 50.0, 1, 40.372486051, 52.2109522658, 5.83629763312),
+        ((40.0, 62.0, -1), (31.586482771, 51.1074062696, -19.7321477863)),
+        ((60.0, 50.0, 1), (40.372486051, 52.2109522658, 5.83629763312)),
     ],
 )
-def test_a_globoid_as_worked_by_hand(theta: float, rho: float, side: int, r: float, phi: float, z: float) -> None:
+def test_a_globoid_as_worked_by_hand(place: tuple[float, float, int], wanted: tuple[float, ...]) -> None:
+    (theta, rho, side), (r, phi, z) = place, wanted
     flank = Flank(WORKED_GLOBOID, Cycloids(45.0, 120.0), math.radians(-22.5), 8.0, side)  # type: ignore[arg-type]
     at = np.array([math.radians(theta)])
     found = flank.along(at, np.array([rho]))
@@ -100,8 +100,8 @@ def test_a_globoid_as_worked_by_hand(theta: float, rho: float, side: int, r: flo
     assert point[2] == pytest.approx(z, abs=1e-10)
     assert flank.on(at, found.w).rho[0] == pytest.approx(rho, abs=1e-11)
     psi, rate = flank.law.derivatives(at, 1)
-    wanted = rho * rate[0] / (90.0 - rho * math.cos(psi[0] + flank.start))
-    assert math.tan(flank.pressure(at, np.array([rho]))[0]) == pytest.approx(wanted, rel=1e-12)
+    steep = rho * rate[0] / (90.0 - rho * math.cos(psi[0] + flank.start))
+    assert math.tan(flank.pressure(at, np.array([rho]))[0]) == pytest.approx(steep, rel=1e-12)
 
 
 def random_flank(rng: random.Random, form: str) -> tuple[Flank, Any, Indexed]:

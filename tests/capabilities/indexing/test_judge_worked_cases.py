@@ -32,7 +32,7 @@ def places(*rows):
     ],
 )
 def test_digits_of_the_worked_cases_are_touched_there(turret, theta, side, place):
-    rollers, points = Rollers(turret.intent, 1e-4), places(place)
+    rollers, points = Rollers(turret.intent, 1e-6), places(place)
     worst = rollers.worst(points)
     assert abs(worst.excess[0]) < 1e-5
     assert worst.excess[0] + worst.open[0] > -1e-9
@@ -45,7 +45,7 @@ def test_digits_of_the_worked_cases_are_touched_there(turret, theta, side, place
 def test_what_a_larger_roller_touches_is_so_far_in_the_metal(turret, more):
     rng = np.random.default_rng(7)
     theta, rho = rng.uniform(0.0, TURN, 80), rng.uniform(turret.inner, turret.outer, 80)
-    rollers = Rollers(turret.intent, 1e-4)
+    rollers = Rollers(turret.intent, 1e-5)
     for side in (-1, 1):
         points = turret.contact(theta, rho, side, more) - [0.0, 0.0, turret.height]
         points = points[np.abs(points[:, 2]) < turret.height]

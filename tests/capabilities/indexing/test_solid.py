@@ -202,7 +202,8 @@ def test_a_tolerance_that_cannot_be_held() -> None:
 def test_an_end_that_is_met_twice_at_one_angle() -> None:
     """A short globoid, whose flank bulges where it meets the upper face."""
     rng = random.Random(10)
-    mesh, facts = index_mesh(design_of(random_indexer(rng, "globoid", inch=False, ccw=False)), 0.05, numbers_of("stl", 1.0))
+    design = design_of(random_indexer(rng, "globoid", inch=False, ccw=False))
+    mesh, facts = index_mesh(design, 0.05, numbers_of("stl", 1.0))
     checked(mesh, 0.05, facts.bound.worst)
 
 
@@ -224,7 +225,7 @@ def test_a_band_is_covered_once(wide: tuple[float, float]) -> None:
     high[-1] = low[-1]
     phi, h = np.concatenate([below, above[1:-1]]), np.concatenate([low, high[1:-1]])
     upper = np.concatenate([[0], np.arange(61, 61 + 45), [60]])
-    found = filled(phi, h, np.arange(61), upper, (40.0, 40.0), wide)
+    found = filled((phi, h), np.arange(61), upper, (40.0, 40.0), wide)
     phi, h = np.concatenate([phi, found.phi]), np.concatenate([h, found.h])
     parts = area(phi, h, found.triangles)
     assert (parts > 0.0).all()
@@ -241,4 +242,4 @@ def test_a_band_is_covered_once(wide: tuple[float, float]) -> None:
 def test_lines_that_cross_are_refused() -> None:
     phi, h = line([0.0, 1.0, 2.0, 1.0], [0.0, 1.0, 0.0, -1.0])
     with pytest.raises(RegionError, match="cross"):
-        filled(phi, h, np.arange(3), np.array([0, 3, 2]), (1.0, 1.0), (9.0, math.inf))
+        filled((phi, h), np.arange(3), np.array([0, 3, 2]), (1.0, 1.0), (9.0, math.inf))
