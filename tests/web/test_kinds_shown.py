@@ -287,7 +287,8 @@ def test_an_indexing_cam_is_made_judged_compared_and_filmed(desk: tab.Tab, tmp_p
     assert {"globoid.stl", "globoid.csv", "report.json"} <= {*files}
     desk.click("solid")
     desk.wait("!byId('solid-figure').hidden")
-    assert desk.text_of("solid-size").endswith("× 72 mm") or "72" in desk.text_of("solid-size")
+    # 2 (100 - sqrt(60^2 - 36^2)) = 104 mm, where no track cuts the rim
+    assert re.match(r"[\d.]+ × 104 × 72 mm", desk.text_of("solid-size"))
     desk.press("keep")
     desk.wait("document.querySelector('#drawing .kept .metal') !== null")
     desk.enter("part.length", "66")
