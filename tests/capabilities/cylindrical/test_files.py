@@ -434,6 +434,7 @@ REMEDIES = [
 ]
 
 
+@pytest.mark.costly("a drum before and after each remedy")
 @pytest.mark.parametrize(("limit", "words", "change"), REMEDIES, ids=lambda _: "")
 def test_remedies_hold(limit: str, words: str, change: tuple[str, str], tmp_path: Path) -> None:
     text = changed(
