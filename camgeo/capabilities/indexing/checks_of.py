@@ -41,7 +41,7 @@ def design_checks(design: IndexDesign, figures: Sequence[Figure]) -> list[Check]
 
 def walls(design: IndexDesign) -> list[tuple[float, str]]:
     """Walls of a cam, mm, each with what it stands between; without a bore its core where that is thinnest."""
-    core = design.recipe.turret.core(design.recipe.form.floor)
+    core = design.recipe.form.core
     if design.bore is None:
         return [(2.0 * core, "across the core within the floor")]
     reach = float(np.hypot(*design.bore.outline.points.T).max())

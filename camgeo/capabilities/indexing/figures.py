@@ -237,5 +237,4 @@ def volume(design: IndexDesign) -> float:
     node, weight = np.polynomial.legendre.leggauss(LAYERS)
     taken = [removed(design, w) for w in (low + 0.5 * (high - low) * (node + 1.0)).tolist()]
     bore = 0.0 if design.bore is None else design.bore.outline.area
-    whole = recipe.turret.whole(recipe.form.blank, recipe.length)
-    return whole - bore * recipe.length - 0.5 * (high - low) * float(weight @ taken)
+    return recipe.form.volume - bore * recipe.length - 0.5 * (high - low) * float(weight @ taken)

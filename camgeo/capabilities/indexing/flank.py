@@ -172,14 +172,6 @@ class Flank:
         rho[open_] = np.nan
         return rho
 
-    def normal(self, theta: Array, rho: Array) -> Array:
-        """Normals (n, 3) of the metal, outwards, at shaft angles theta and distances rho along the roller, (n,)."""
-        pose = self.pose(theta)
-        touch = self.touch(pose, rho)
-        x, y, z = self.form.axes(pose, touch.sine, touch.cosine)[2]
-        cosine, sine = np.cos(theta), np.sin(theta)
-        return -self.side * np.column_stack([x * cosine - y * sine, x * sine + y * cosine, z])
-
     def pressure(self, theta: Array, rho: Array, at: Side = 1) -> Array:
         """Pressure angle (n,), rad, at distances rho along the roller: between the force, seen along it, and its way.
 
@@ -195,7 +187,3 @@ class Flank:
         touch = self.touch(self.pose(theta, at), rho)
         part = 1.0 + (self.radius * touch.a2) ** 2
         return np.asarray(touch.w * part / (self.radius * touch.regular))
-
-    def regularity(self, theta: Array, rho: Array, at: Side = 1) -> Array:
-        """D, mm (n,), at shaft angles theta and distances rho along the roller, (n,)."""
-        return np.asarray(self.touch(self.pose(theta, at), rho).regular)

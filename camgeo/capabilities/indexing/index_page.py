@@ -25,7 +25,7 @@ JOINT = 0.016  # of the blank's width and length together: size of a joint
 def scene(design: IndexDesign, step: int = 0) -> Scene:  # noqa: ARG001 - the blank looks alike at all steps
     """The blank of the cam, and its turret over the turn, in the recipe's unit."""
     recipe = design.recipe
-    drawn = recipe.turret.drawn(recipe.form.radius, recipe.length, recipe.roller, recipe.stops, recipe.sense)
+    drawn = recipe.turret.drawn(recipe.roller, recipe.stops, recipe.sense)
     theta = np.linspace(0.0, TURN, STEPS + 1)
     psi = recipe.start + design.law.derivatives(theta, 0)[0]
     x, z = drawn.centre

@@ -262,7 +262,6 @@ def _built(values: Values, document: Document, reader: Reader) -> IndexRecipe:
     """Make the recipe of values in which there is no fault."""
     cam, part = values["cam"], values["part"]
     keyway, given = KEYWAY.build(part), cam["turret"]
-    form, turret = _form(values)
     inner, outer = _ends(cam)
     return IndexRecipe(
         name=values["name"],
@@ -272,8 +271,7 @@ def _built(values: Values, document: Document, reader: Reader) -> IndexRecipe:
         rotation=values.get("rotation", "cw"),
         export=build_export(values.get("export", {}), FILES, "stl"),
         verify=Verify(angles=ANGLES, **values.get("verify", {})),
-        form=form,
-        turret=turret,
+        turret=_turret(values),
         roller=Roller(given["roller"], inner, outer),
         stops=given["stops"],
         start=given.get("start", -math.pi / given["stops"]),
@@ -292,17 +290,16 @@ def _built(values: Values, document: Document, reader: Reader) -> IndexRecipe:
     )
 
 
-def _form(values: Values) -> tuple[Barrel | Globoid, Turret]:
-    """The blank, and the turret that goes with it."""
+def _turret(values: Values) -> Turret:
+    """The turret, with the form of the cam beside it."""
     cam, length, height = values["cam"], values["part"]["length"], _height(values)
     given = cam["turret"]
     common: dict[str, Any] = {"depth": cam["depth"], "height": height, "length": length}
     if "globoid" in cam:
         distance = cam["globoid"]["distance"]
-        return Globoid(radius=cam["globoid"]["radius"], distance=distance, **common), GloboidTurret(height, distance)
+        return GloboidTurret(Globoid(radius=cam["globoid"]["radius"], distance=distance, **common))
     side: Literal[-1, 1] = -1 if given.get("side") == "leading" else 1
     pitch = given["radius"]
     usual = 0.5 * side * pitch * (1.0 + math.cos(math.pi / given["stops"]))
     offset = cam["barrel"].get("offset", usual)
-    form = Barrel(radius=cam["barrel"]["radius"], offset=offset, pitch=pitch, side=side, **common)
-    return form, BarrelTurret(height, pitch, offset, side)
+    return BarrelTurret(Barrel(radius=cam["barrel"]["radius"], offset=offset, pitch=pitch, side=side, **common))

@@ -2,11 +2,11 @@
 
 from __future__ import annotations
 
-import math
 from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
+from camgeo.capabilities.indexing.forms import QUARTER
 from camgeo.curve.curve import CurveError
 from kin.numeric.angles import TURN
 from kin.numeric.newton import zeros
@@ -20,7 +20,7 @@ if TYPE_CHECKING:
 SEEK = 720  # shaft angles of a turn at which ends are sought
 LAYERS = 9  # at which a cam is looked at
 SETTLED = 1e-12  # rad: the last step to an end
-QUARTER = 0.5 * math.pi
+MARGIN = 0.1  # rad on the turret beyond the ends of the cam, over which a track is sought
 NAMES = {-1: "lower", 1: "upper"}
 
 
@@ -48,7 +48,7 @@ def layers_of(flank: Flank, count: int = LAYERS) -> Array:
 
 
 def angles_of(flank: Flank) -> Array:
-    """Shaft angles, rad, over which the motion is known and the roller stands on the cam's side of its turret."""
+    """Shaft angles, rad, over which the motion is known and the roller may touch the cam, or is a little beyond it."""
     first, last = flank.law.turns
     theta = np.linspace(TURN * first, TURN * (last + 1), SEEK * (last + 1 - first) + 1)
     return np.asarray(theta[_near(flank, theta)])
@@ -56,9 +56,9 @@ def angles_of(flank: Flank) -> Array:
 
 def _near(flank: Flank, theta: Array) -> Mask:
     """Whether the roller may touch the cam at shaft angles (n,), rad, or is a little beyond it (n,)."""
-    low, high = flank.form.passing(flank.radius)
+    low, high = flank.form.spanned(flank.radius)
     psi = flank.psi(theta)
-    return np.asarray((psi > low) & (psi < high))
+    return np.asarray((psi > max(low - MARGIN, -QUARTER)) & (psi < min(high + MARGIN, QUARTER)))
 
 
 def span_of(flank: Flank, w: Array) -> Span:
@@ -125,8 +125,7 @@ def _end(flank: Flank, w: Array, low: Array, high: Array, z: float) -> Array:
 
 def breaks_within(flank: Flank) -> Array:
     """Shaft angles, rad, rising, at which a derivative of the motion may jump, where the roller is near."""
-    first, last = flank.law.turns
-    theta = np.sort(np.concatenate([np.asarray(flank.law.breaks) + TURN * k for k in range(first, last + 1)]))
+    theta = flank.law.breaks_over(*flank.law.turns)
     return np.asarray(theta[_near(flank, theta)])
 
 
@@ -149,19 +148,6 @@ def layers_at(flank: Flank, theta: Array, z: float) -> Array:
         return sense * (flank.place(pose, rho, touch.sine, touch.cosine)[2] - z), sense * z2 / w2
 
     return zeros(off, np.minimum(low, high), np.maximum(low, high), 0.5 * (low + high), SETTLED)
-
-
-def demand_clear(flank: Flank) -> None:
-    """Raise TrackError where a roller that has left at an end face comes near the cam again behind the turret."""
-    psi = np.linspace(0.0, math.pi, 721)
-    form = flank.form
-    for sign, name in ((1.0, "upper"), (-1.0, "lower")):
-        near = form.meets(sign * psi, flank.radius)
-        clear = np.flatnonzero(~near)
-        if not clear.size or near[clear[0] :].any():
-            problem = f"a roller that has left at the {name} end face meets the cam again on the turret's far side"
-            where = float(np.mean(angles_of(flank)))
-            raise TrackError(problem, where, "give a larger turret, or a shorter part.length")
 
 
 def demand_ends(flanks: Mapping[str, Flank]) -> None:

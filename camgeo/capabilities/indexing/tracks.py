@@ -20,8 +20,7 @@ def angles(design: IndexDesign) -> Array:
     """Shaft angles (n,), rad, at which the roller that stands at the start after no turn may touch the cam."""
     turns = design.turns
     steps = np.arange(turns.start * STEPS, turns.stop * STEPS + 1) * (TURN / STEPS)
-    breaks = (design.law.breaks[None, :] + TURN * np.arange(turns.start, turns.stop)[:, None]).ravel()
-    theta = np.unique(np.concatenate([steps, breaks]))
+    theta = np.unique(np.concatenate([steps, design.law.breaks_over(turns.start, turns.stop - 1)]))
     psi = design.recipe.start + design.law.derivatives(theta, 0)[0]
     low, high = design.spanned
     near = np.flatnonzero((psi >= low) & (psi <= high))
@@ -63,13 +62,13 @@ def rib_thickness(design: IndexDesign) -> tuple[float, float]:
 
 def removed(design: IndexDesign, w: float) -> float:
     """Area, mm^2, that all rollers together take out of a layer, mm."""
-    turret = design.recipe.turret
-    ends = np.array(design.recipe.form.ends(w))
-    base, most = turret.across(np.full(2, w), ends)
+    form = design.recipe.form
+    ends = np.array(form.ends(w))
+    base, most = form.area(w, ends)
     taken, last = {}, {}
     for name in design.flanks:
         _, rows = track(design, name, w)
-        below = turret.across(np.full(rows.h.shape, w), np.clip(rows.h, *ends)) - base
+        below = form.area(w, np.clip(rows.h, *ends)) - base
         taken[name] = float(np.sum(0.5 * (below[1:] + below[:-1]) * np.diff(rows.phi)))
         last[name] = float(rows.phi[-1])
     return taken["upper"] - taken["lower"] + float(most - base) * (last["lower"] - last["upper"])

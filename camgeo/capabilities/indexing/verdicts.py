@@ -28,7 +28,7 @@ def intended(design: IndexDesign, mm: float = 1.0) -> intent.IndexIntent:
     recipe, roller = design.recipe, design.recipe.roller
     bore = None if design.bore is None else holes_of(Body(recipe.length, (design.bore,)))[0]
     return intent.IndexIntent(
-        recipe.turret.intended(recipe.form.radius, recipe.form.depth),
+        recipe.turret.intended(),
         recipe.turret.height,
         recipe.length,
         design.motion.motion,

@@ -105,7 +105,7 @@ def test_volumes() -> None:
     barrel, globoid = shared_design(BARREL), shared_design(GLOBOID)
     z = np.linspace(-30.0, 30.0, 20001)
     whole = float(np.trapezoid(math.pi * (90.0 - np.sqrt(49.0**2 - z**2)) ** 2, z))
-    assert globoid.recipe.turret.whole(49.0, 60.0) == pytest.approx(whole, rel=1e-8)
+    assert globoid.recipe.form.volume == pytest.approx(whole, rel=1e-8)
     r = np.linspace(37.0, 50.0, 201)
     taken = float(np.trapezoid([removed(barrel, w) for w in r.tolist()][::20], r[::20]))
     bore = 0.0 if barrel.bore is None else barrel.bore.outline.area
