@@ -8,7 +8,7 @@ import numpy as np
 
 from camgeo.capabilities.indexing.figures import bears
 from camgeo.capabilities.indexing.keys import LENGTH, RIB
-from camgeo.measures.placed import Figure, figure_check, limit_checks
+from camgeo.measures.placed import figure_check, limits_and_wall
 from camgeo.measures.rule_remark import RuleRemark
 from camgeo.recipe.figures import LEAST_WALL, PRESSURE_ANGLE
 from kin.numeric.check import Check, failed
@@ -17,6 +17,7 @@ if TYPE_CHECKING:
     from collections.abc import Sequence
 
     from camgeo.capabilities.indexing.design import IndexDesign
+    from camgeo.measures.placed import Figure
 
 STEEP = 45.0  # degrees, by rule of thumb for a follower that swings
 ROUNDING = 1e-9  # mm: a wall that is less by no more holds
@@ -50,9 +51,7 @@ def walls(design: IndexDesign) -> list[tuple[float, str]]:
 
 def limits_held(design: IndexDesign, figures: Sequence[Figure], checks: Sequence[Check]) -> list[Check]:
     """Checks of the figures that the recipe limits, those of the least wall among them."""
-    wall = next((check for check in checks if check.name == LEAST_WALL and check.value is not None), None)
-    more = [] if wall is None or wall.value is None else [Figure(LEAST_WALL, wall.value, "mm")]
-    return limit_checks(design.recipe.limits, [*figures, *more], "deg")
+    return limits_and_wall(design.recipe.limits, figures, checks, "deg")
 
 
 def remarks_on(design: IndexDesign, figures: Sequence[Figure]) -> tuple[RuleRemark, ...]:

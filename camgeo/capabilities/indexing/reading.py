@@ -13,6 +13,7 @@ from camgeo.common.rounding import downward, upward
 from camgeo.motions.motion import check_filled
 from camgeo.part import bore
 from camgeo.part.keyway import FEATURE as KEYWAY
+from camgeo.part.keyway import check_round
 from camgeo.part.part import Part
 from camgeo.recipe.export import build_export, check_files
 from camgeo.recipe.figure_bounds import build_bounds, check_bounds
@@ -85,7 +86,7 @@ def _check(values: Values, reader: Reader) -> None:
     check_filled(cam["motion"], "cam.motion", TURN, "the whole turn, 360 degrees", reader, why=why)
     _check_turret(cam, reader)
     _check_drive(cam.get("drive", {}), reader)
-    _check_part(part, reader)
+    check_round(part, reader)
     check_files(values, reader, FILES)
     if reader.errors:
         return
@@ -133,15 +134,6 @@ def _check_drive(drive: Values, reader: Reader) -> None:
 def _loaded(drive: Values) -> bool:
     """Whether the drive says what torque the turret takes."""
     return "load" in drive or ("inertia" in drive and "rpm" in drive)
-
-
-def _check_part(part: Values, reader: Reader) -> None:
-    bore.check_bore(part, reader, [KEYWAY.name] if KEYWAY.name in part else [])
-    if KEYWAY.name in part:
-        for key, why in KEYWAY.needs:
-            if key not in part:
-                reader.fault_at(f"part.{KEYWAY.name}", f"needs part.{key}: {why}", None, f"give part.{key}")
-        KEYWAY.check(part, reader)
 
 
 def _check_barrel(values: Values, reader: Reader) -> None:

@@ -57,7 +57,7 @@ def test_a_run_writes_table_page_and_report(text: str, tmp_path: Path) -> None:
 def test_rollers_are_drawn_where_the_turret_leads_them(text: str, head: str) -> None:
     """To the right of the viewer y counts, of a globoid the distance from the cam's axis; rollers stand at psi."""
     design = shared_design(head + text)
-    sizes = vars(design.recipe.turret)
+    sizes = vars(design.recipe.form)
     bodies = {body.name: body for body in scene(design).bodies}
     for step in (0, 100, 260):
         theta = np.array([math.radians(0.5 * step)])
