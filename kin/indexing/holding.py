@@ -30,6 +30,7 @@ SHARE = 0.05  # of the tolerance: what angles between two of the grid may cost
 LEAST, MOST = 1024, 65_536  # angles of the grid
 LAYERS = (0.137, 0.382, 0.618, 0.881)  # of the length of a roller, at which flanks are asked
 NEAR = 1e-3  # mm: a roller that touches so near the blank or the floor touches a flank
+EVEN = 1e-6  # of a step: so near its middle an angle counts as there
 MEETINGS = 30  # steps to the place of a roller that touches a layer
 ANGLES = 720  # at which the steepest place is looked for
 
@@ -91,8 +92,9 @@ def _places(
         angle = theta[rows, alone] + part * (theta[rows, next_] - theta[rows, alone])
         ends.append((place, angle))
     (a, low), (b, high) = ends
-    first = np.ceil(np.minimum(low, high) / width - 0.5).astype(np.intp)
-    last = np.floor(np.maximum(low, high) / width - 0.5).astype(np.intp)
+    # neighbours have a place in common, but its angle in each of them to within rounding alone
+    first = np.ceil(np.minimum(low, high) / width - 0.5 - EVEN).astype(np.intp)
+    last = np.floor(np.maximum(low, high) / width - 0.5 + EVEN).astype(np.intp)
     own, more = runs_of(np.maximum(last - first + 1, 0))
     step = first[own] + more
     way = (high - low)[own]

@@ -67,18 +67,18 @@ def index_mesh(design: IndexDesign, tolerance: float, precision: Precision) -> t
     recipe, form = design.recipe, design.recipe.form
     size = max(form.rim(form.blank), abs(form.length))
     fine = precision.fit_tolerance(tolerance, ROUNDINGS * size)
-    widths = [form.widest(w, fine) for w in (form.floor, form.blank)]
-    wide = min(width[0] for width in widths), min(width[1] for width in widths)
+    deep, high = (form.widest(w, fine) for w in (form.floor, form.blank))
+    wide = min(deep[0], high[0]), min(deep[1], high[1])
     body = Building(precision)
     sheets = {name: sheet_of(flank, fine, wide) for name, flank in design.flanks.items()}
     walls = {name: _wall(body, form, sheet) for name, sheet in sheets.items()}
     lower, upper = walls["lower"], walls["upper"]
     floor, blank = (form, form.floor), (form, form.blank)
-    mouths = [_arc(body, floor, (k, upper.floor, lower.floor), 0.0, wide[0]) for k in range(2)]
-    rims = [_arc(body, blank, (k, lower.blank, upper.blank), -TURN, wide[0]) for k in range(2)]
-    off = _fill(body, floor, mouths[0].then(lower.floor), upper.floor.then(mouths[1]), wide)
+    mouths = [_arc(body, floor, (k, upper.floor, lower.floor), 0.0, deep[0]) for k in range(2)]
+    rims = [_arc(body, blank, (k, lower.blank, upper.blank), -TURN, high[0]) for k in range(2)]
+    off = _fill(body, floor, mouths[0].then(lower.floor), upper.floor.then(mouths[1]), deep)
     rib = rims[0].then(upper.blank), lower.blank.turned(-TURN).then(rims[1])
-    off = max(off, _fill(body, blank, *rib, wide))
+    off = max(off, _fill(body, blank, *rib, high))
     if off > fine:
         raise ToleranceError(f"blank and floor are not within {tolerance:.3g} mm", off)
     bore_low, bore_high, bore_off = _bore(body, design, tolerance)
