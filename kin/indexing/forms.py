@@ -49,9 +49,6 @@ class Form(Protocol):
     def developed(self, radius: float) -> float:
         """Depth of the cylinder of a radius, mm; raises ValueError for a form whose layers are no cylinders."""
 
-    def met(self, radius: float, psi: Array) -> tuple[Array, Array]:
-        """Where rollers' axes at angles psi meet the cylinder of a radius: polar angle ahead of theirs, and height."""
-
     def demand(self, stops: int, roller: float, ends: tuple[float, float]) -> None:
         """Raise ValueError for a turret that such a form cannot have; `ends` are the heights of both faces."""
 
@@ -162,12 +159,6 @@ class Barrel:
     def developed(self, radius: float) -> float:
         """Below the blank's radius."""
         return self.radius - radius
-
-    def met(self, radius: float, psi: Array) -> tuple[Array, Array]:
-        """Axes are parallel to the radius of the cam; nan where they pass the cylinder by."""
-        with np.errstate(invalid="ignore"):
-            ahead = np.arcsin((self.offset - self.sense * self.pitch * np.cos(psi)) / radius)
-        return ahead, np.where(np.isfinite(ahead), self.pitch * np.sin(psi), np.nan)
 
     def demand(self, stops: int, roller: float, _ends: tuple[float, float]) -> None:
         """Raise ValueError where the rollers on the turret overlap."""
@@ -292,10 +283,6 @@ class Globoid:
 
     def developed(self, _radius: float) -> float:
         """None: a torus does not unroll. Raises ValueError."""
-        raise ValueError("a globoid has no development")
-
-    def met(self, _radius: float, _psi: Array) -> tuple[Array, Array]:
-        """None: there is no development. Raises ValueError."""
         raise ValueError("a globoid has no development")
 
     def demand(self, stops: int, roller: float, ends: tuple[float, float]) -> None:

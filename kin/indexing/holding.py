@@ -32,6 +32,7 @@ LAYERS = (0.137, 0.382, 0.618, 0.881)  # of the length of a roller, at which fla
 NEAR = 1e-3  # mm: a roller that touches so near the blank or the floor touches a flank
 EVEN = 1e-6  # of a step: so near its middle an angle counts as there
 MEETINGS = 30  # steps to the place of a roller that touches a layer
+SLACK = 1e-6  # of the cost at the steepest of these places, for steeper ones between them
 ANGLES = 720  # at which the steepest place is looked for
 
 
@@ -129,7 +130,7 @@ def _take(rollers: Rollers, places: tuple[Array, Indices], side: Side, rows: lis
 
 
 def by_error(rollers: Rollers, side: Side, layer: float | None = None) -> float:
-    """Greatest turn of the turret, rad, that an error of 1 mm of a flank costs where it may carry a roller.
+    """Greatest turn of the turret, rad, that an error of 1 mm of a flank costs where it may carry a roller: sampled.
 
     It is that along the whole roller, or where it touches the layer of a depth, mm.
     """
@@ -150,4 +151,4 @@ def by_error(rollers: Rollers, side: Side, layer: float | None = None) -> float:
             there = (np.abs(own) < 0.5 * math.pi) & (height >= intent.ends[0]) & (height <= intent.ends[1])
             there &= (depth >= -NEAR) & (depth <= form.depth + NEAR)
             worst = max(worst, float(cost[there].max(initial=0.0)))
-    return worst
+    return worst * (1.0 + SLACK)

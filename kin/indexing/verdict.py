@@ -11,6 +11,8 @@ if TYPE_CHECKING:
     from kin.numeric.check import Check
     from kin.read.mesh.mesh import Mesh
 
+CONTOUR, MOTION = "contour", "motion"  # checks of solids and of developments
+
 
 @dataclass(frozen=True)
 class MotionError:
