@@ -25,6 +25,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple, TypeAlias
 
 import numpy as np
 
+from camgeo.fit.facets import BESIDE
 from kin.numeric.interval import Ball, atan2, sin_cos
 from kin.numeric.records import dataclass
 
@@ -36,7 +37,6 @@ if TYPE_CHECKING:
 QUARTER = 0.5 * math.pi
 WIDEST = math.pi / 3.0  # polar angle that a triangle may span, however coarse
 LESS = 0.95  # times the span of a triangle that is too wide
-BESIDE = 2.1  # turns of the normal that count, as in `camgeo.capabilities.indexing.bends`
 Number: TypeAlias = Any
 """An array, or balls."""
 Vector: TypeAlias = tuple[Number, Number, Number]
