@@ -1,10 +1,11 @@
 """How far the surface of a file is from the flanks: out of the metal, proud, and into it, bare; with proofs.
 
-Proud is the depth at which a triangle reaches into what rollers sweep. Seen along a roller's axis it is met at an edge
-first, so that the worst places of edges tell it exactly. Bare is how far a place of the surface is from all rollers at
-all angles. At one angle the distance from an axis is convex, so that over a triangle it is greatest at a corner: the
-corners' distances at any angle bound it. An angle between the worst ones of the corners is taken, and triangles are
-divided until the bound is close to what corners show.
+Proud is the depth to which a triangle reaches into what rollers sweep. Seen along a roller's axis, the deepest place of
+a triangle is on an edge, unless the axis passes through it; that axis is near the edges too. So edges tell it, within
+what their search leaves open. Bare is how far a place of the surface is from all rollers at all angles. At one angle
+the distance from an axis is convex, and over a triangle it is greatest at a corner. So the corners' distances at any
+angle bound it. An angle between the worst ones of the corners is taken, and triangles are divided until the bound is
+close to what corners show.
 """
 
 from __future__ import annotations

@@ -1,8 +1,9 @@
 """Developments of a barrel: lines of a drawing laid round a cylinder, and a turret set down on them there.
 
-A straight line of the drawing becomes a helix. The squared distance of its points from an axis bends along it, in the
-polar angle, by no more than `2 (r^2 + climb^2)` above and `2 r` times the distance below: so points close to one
-another settle both what stands out and what is bare. A development says nothing of any other radius.
+A straight line of the drawing becomes a helix. The second derivative of the squared distance of its points from an
+axis, by the polar angle, is at most `2 (r^2 + climb^2)` and at least -2 r times the distance. So points close to one
+another settle what stands out and what is bare, within a remainder. The turret is set down at the angles between such
+points, and its errors there are a sample. A development says nothing of any other radius.
 """
 
 from __future__ import annotations
@@ -49,7 +50,8 @@ class _Line(NamedTuple):
 class _Measured:
     """What a line shows: its distance in the drawing, mm, at an angle, rad, and the turret's errors (m,), rad.
 
-    Both are known within remainders. An error of the line of 1 mm costs `cost`, rad, at most.
+    The distance is known within `remainder`, each error within `room`. An error of the line of 1 mm turns the turret by
+    `cost`, rad, at most.
     """
 
     off: float

@@ -1,10 +1,10 @@
-"""What the file's flanks hold the turret by, over the angles of the cam, by positions of its rollers alone.
+"""How a file's flanks hold the turret, over the angles of the cam, by positions of its rollers alone.
 
-In a layer the triangles of a flank are cut to lines, and each line is asked at those of its places that the roller
-touches about the middle of a step of the angle, as the worst angles of the corners tell. A place is a point of the
-file's surface, wherever on it: so what the best place holds is held. It is asked at both ends of the step. Between them
-its excess is above the greater of both by no more than a bound that the form gives, and since the excess is convex in
-the turret's angle, that is worth no more than the bound over the excess's slope. How far a flank pushes the turret at
+Layers cut the triangles of a flank to lines. On each line those places are looked at that a roller touches about the
+middle of a step of the angle; the worst angles of the corners tell them. A place is a point of the file's surface, so
+the turret is held at least as well as by the best of them. Each is looked at from both ends of the step. Between the
+ends its excess is above the greater of both by no more than a bound that the form gives. The excess is convex in the
+turret's angle, so that this turns the turret by at most the bound over the slope. How far a flank pushes the turret at
 most follows from the worst angles of its corners and edges (`kin.indexing.contour`).
 """
 

@@ -1,8 +1,8 @@
 """Intended indexing cams and permitted errors: all that the judge takes beside the file itself.
 
-A cam reaches from z = 0 to its length, from its bore to its blank. All that rollers without ends sweep on the turret's
-side of the cam is cut from the blank, down to the floor, which is a layer of the form. What is left between the rollers
-is a rib that winds from one end to the other. The metal below a roller is its lower flank, that above it the upper one.
+A cam reaches from z = 0 to its length, from its bore to its blank. Rollers without ends, on the turret's side of the
+cam, sweep a groove in the blank, down to the floor, which is a layer of the form. What is left between the rollers is a
+rib that winds from one end to the other. The metal below a roller has the lower flank, that above it the upper one.
 """
 
 from __future__ import annotations

@@ -1,9 +1,12 @@
 """The verdict on a file of an indexing cam: whether it is the intended cam, and its turret moves as intended.
 
-A solid is taken as it lies on disk. The way it was made is not known here: the exact metal is what rollers leave of the
-blank at all angles (`kin.indexing.rollers`), the motion is that of a turret held by the file's own triangles. Every
-triangle is measured against a face of the intended cam. Together with a closed surface and the volume that says that
-nothing is missing: a closed surface all of which is near that of the cam goes round it once, if it encloses as much.
+A solid is taken as it lies on disk, and the way it was made is not known here. The exact metal is what rollers leave of
+the blank at all angles (`kin.indexing.rollers`). The motion is that of a turret held by the file's own triangles. Every
+triangle is measured against a face of the intended cam. A closed surface all of which is near that of the cam goes
+round it once, if it encloses as much: so nothing is missing.
+
+Contour and motion are proved within remainders. The play is known at angles of a grid. The greatest cost of an error,
+on which a limit that is not given depends, is sampled; the volume is integrated.
 """
 
 from __future__ import annotations

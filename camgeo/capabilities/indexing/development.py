@@ -1,11 +1,12 @@
 """Developments of a barrel: its flanks, unrolled at a radius, as a drawing whose layers name it.
 
-A line holds for its radius alone. It runs from one end face to the other, over more than a turn, and is drawn in pieces
+A line holds for its radius alone. It runs from one end face to the other, over more than a turn. It is drawn in pieces
 of one turn, from x = 0 to the circumference.
 
-On a cylinder a flank is p(theta, rho(theta)). With p_ij of `camgeo.capabilities.indexing.bends`, the sum
-q = p_11 + 2 p_12 rho' + p_22 rho'^2 and the unit vector o away from the cam's axis, the second derivative of the
-unrolled line is that part of q + p_2 rho'' which is square to o, where p_2.o rho'' = -r phi'^2 - q.o.
+On a cylinder a flank is p(theta, rho(theta)). Let p_ij be the derivatives of `camgeo.capabilities.indexing.bends`, o
+the unit vector away from the cam's axis, and q = p_11 + 2 p_12 rho' + p_22 rho'^2. The second derivative of the
+unrolled line is then the part of q + p_2 rho'' that is square to o, where p_2.o rho'' = -r phi'^2 - q.o. It is bounded
+over stretches of the shaft angle, so that the distance of the chords from the line is proved.
 """
 
 from __future__ import annotations
@@ -126,7 +127,8 @@ def unrolled_bends(flank: Flank, look: Array, radius: float) -> Array:
 def _enclosed(flank: Flank, cells: tuple[Array, Array], radius: float) -> Ball:
     """Balls of the distances along the roller at which a cylinder is touched over cells; infinite where not proved.
 
-    Within a ball the distance moves no faster than its derivative there; where that does not lead out, it stays inside.
+    Within a ball the distance changes no faster than the greatest derivative there. Where that is too slow to reach the
+    edge of the ball within the cell, the distance stays inside.
     """
     middle, half = 0.5 * (cells[0] + cells[1]), 0.5 * (cells[1] - cells[0])
     pose = pose_over(flank, cells)

@@ -1,4 +1,8 @@
-"""Figures of an indexing cam, each with its shaft angle: of the exact flanks, of the turret in time, of its load."""
+"""Figures of an indexing cam, each with its shaft angle: of the exact flanks, of the turret in time, of its load.
+
+Figures of flanks and loads are sampled over the turn, and narrowed about the greatest sample. Velocity and acceleration
+are proved extremes of the motion.
+"""
 
 from __future__ import annotations
 

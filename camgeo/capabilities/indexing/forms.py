@@ -7,8 +7,8 @@ rho, and m is square to it and to e_t:
     barrel    g = e_r, m = k;   axis rho e_r + y e_t + z k,   y = offset - s l cos psi,   z = H + l sin psi
     globoid   g = -cos psi e_r + sin psi k, m = sin psi e_r + cos psi k;   axis C e_r + H k + rho g
 
-A point of the axis moves against the cam by A e_t + B m, and by `slip` along g, per radian (the equation of meshing is
-solved in `camgeo.capabilities.indexing.flank`):
+By the radian of theta a point of the axis moves against the cam by A e_t + B m, and by `slip` along g. The equation of
+meshing is solved in `camgeo.capabilities.indexing.flank`.
 
     barrel    A = rho + y',         B = z',         slip = -y
     globoid   A = C - rho cos psi,  B = rho psi',   slip = 0
@@ -360,8 +360,8 @@ class Globoid:
     def spanned(self, radius: float) -> tuple[float, float]:
         """Angles on the turret, rad, between which a roller of a radius, mm, touches the cam; a quarter turn at most.
 
-        Seen along the turret's axis, metal lies no nearer to it than the throat, so that no more of an angle than
-        asin(radius/throat) is between a point of it and the roller's axis.
+        Seen along the turret's axis, no metal lies nearer to it than the throat. So the angle between a point that a
+        roller touches and the roller's axis is at most asin(radius/throat).
         """
         low, high = -self.height / self.radius, (self.length - self.height) / self.radius
         beside = math.asin(min(radius / self.radius, 1.0))

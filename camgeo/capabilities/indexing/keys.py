@@ -46,7 +46,7 @@ BARREL = mapping(
     Field(
         "offset",
         Kind.LENGTH,
-        "distance of the turret's axis from that radius, the way the contact runs on a turning cam",
+        "distance of the turret's axis from that radius, above 0 against the way the cam's surface moves",
         default="half of turret.radius times 1 + cos(180°/stops); below 0 of a leading turret",
         at_least=-MOST,
         at_most=MOST,
@@ -107,12 +107,12 @@ TURRET = Field(
             Field(
                 "clearance",
                 Kind.LENGTH,
-                "play of a roller, on the upper flank and square to it",
+                "clearance of a roller in the groove, square to the upper flank",
                 default="0",
                 at_least=0,
                 at_most=MOST,
             ),
-            length("preload", "by how much the upper flank is nearer than a roller without play leaves it"),
+            length("preload", "by how much the roller of the upper flank is smaller: it is pressed on the rib"),
         )
     ),
 )
@@ -136,7 +136,7 @@ CAM = FieldTable(
         Field("kind", Kind.CHOICE, "a cam that advances a turret", required=True, choices=("indexing",)),
         BARREL,
         GLOBOID,
-        length("depth", "depth of the track below the blank", required=True),
+        length("depth", "depth of the groove below the blank", required=True),
         TURRET,
         motion_field(
             "motion",
@@ -152,7 +152,7 @@ CAM = FieldTable(
 PART = replace(
     mapping(
         "part",
-        "the cam beside its track; angles from the radius that faces the turret at shaft angle 0",
+        "the cam beside its groove; angles from the radius that faces the turret at shaft angle 0",
         length("length", "length of the cam along its axis", required=True),
         bore.FIELD,
         KEYWAY.field,
@@ -175,7 +175,7 @@ FIGURES = {
     MOST_ENGAGED: ("greatest number of rollers that a flank bears on at once", Kind.NUMBER),
     RIB: ("least thickness of the rib between two rollers, across the turret's radius", Kind.LENGTH),
     "play": ("greatest play of the turret, to first order in the clearance, degrees", Kind.ANGLE),
-    "mating-radius": ("least radius, of both bodies together, across a line of contact", Kind.LENGTH),
+    "mating-radius": ("least equivalent radius of curvature of cam and roller, across a line of contact", Kind.LENGTH),
     "velocity": ("greatest velocity of the turret, degrees a second", Kind.ANGLE),
     "acceleration": ("greatest acceleration of the turret, degrees a second squared", Kind.ANGLE),
     "turret-torque": ("greatest torque on the turret, of load and inertia, N m", Kind.NUMBER),

@@ -2,9 +2,10 @@
 
 Where a flank enters at the lower end face and leaves at the upper one, columns end on that face. The breaks of the
 motion, and the corners of the flank, lie on columns. Two columns are joined from the floor to the blank in the order of
-their layers. Where an end is met twice at one shaft angle, the columns before it lean instead, so that the last one
-lies in the end face. Each triangle lies in a box of shaft angles and rho, whose bound is proved
-(`camgeo.capabilities.indexing.bends`).
+their layers. Where a flank meets an end face twice at one shaft angle, the columns before it lean, and the last one
+lies in that face. Each triangle lies in a cell of shaft angles and rho, whose bound is proved
+(`camgeo.capabilities.indexing.bends`). Where a flank meets an end face is found in layers, and looked at again at all
+points of the sheet.
 """
 
 from __future__ import annotations

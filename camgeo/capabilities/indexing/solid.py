@@ -2,8 +2,8 @@
 
 In the layer of the blank the metal is one band about the cam: from the upper flank of a turn of the track up to the
 lower flank of the next turn. On the floor the groove is one band, from the lower flank up to the upper one. Both end
-on the end faces. These are plane regions between the bore and a line that runs along the blank, down the upper flank,
-along the floor and up the lower flank.
+on the end faces. These are plane, and bounded by the bore inside. Outside, a line bounds them that runs along the
+blank, down the upper flank, along the floor and up the lower flank.
 """
 
 from __future__ import annotations

@@ -1,4 +1,8 @@
-"""Whether an indexing cam can be made: rollers that meet what they must not, undercut, ribs that vanish."""
+"""Whether an indexing cam can be made: rollers that meet what they must not, undercut, ribs that vanish.
+
+Samples find a fault and the size that would serve. That no flank is undercut is proved at the end
+(`camgeo.capabilities.indexing.undercut`).
+"""
 
 from __future__ import annotations
 
@@ -30,7 +34,7 @@ def demand_room(design: IndexDesign) -> None:
     def shown(value: float) -> str:
         return f"{value / recipe.mm:.6g} {recipe.units}"
 
-    problem = recipe.turret.misled(design.largest, shown)
+    problem = recipe.turret.fault(design.largest, shown)
     if problem is not None:
         field, words, remedy = problem
         raise recipe.error(recipe.stated(field), words, None, remedy)

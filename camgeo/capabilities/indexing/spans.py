@@ -1,4 +1,4 @@
-"""The track of all rollers in the layers of an indexing cam: where it enters and leaves, and what stands between."""
+"""Where the flanks of an indexing cam meet its end faces, layer by layer, and whether the track is sound there."""
 
 from __future__ import annotations
 
@@ -151,9 +151,9 @@ def layers_at(flank: Flank, theta: Array, z: float) -> Array:
 
 
 def demand_ends(flanks: Mapping[str, Flank]) -> None:
-    """Raise TrackError where the rib between two turns of the track does not reach an end face.
+    """Raise TrackError where the rib between two turns of the groove does not reach an end face, and as `span_of` does.
 
-    Flanks are `lower` and `upper`; raises as `span_of` does, too.
+    Flanks are `lower` and `upper`. It is looked at on the floor and on the blank.
     """
     lower, upper = (
         (flank, span_of(flank, np.array([flank.form.floor, flank.form.blank])))

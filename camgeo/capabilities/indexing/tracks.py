@@ -39,9 +39,9 @@ def track(design: IndexDesign, name: str, w: float) -> tuple[Array, Contact]:
 def rib_thickness(design: IndexDesign) -> tuple[float, float]:
     """Least thickness of the rib, mm, and the shaft angle at which its lower roller is there, rad.
 
-    It is measured along the cam's axis, in a globoid along arcs about the turret's axis, at floor, middle and blank,
-    where both its sides lie within the cam; of a rib that is none also where one of them does. Without such a place it
-    is infinite.
+    It is measured along the cam's axis, in a globoid along arcs about the turret's axis. It is sampled at floor, middle
+    and blank, where both sides of the rib lie within the cam. Where the rollers leave no rib, and it is 0 or less, one
+    side is enough. It is infinite without such a place.
     """
     recipe, found = design.recipe, []
     for w in np.linspace(*recipe.layers, 3).tolist():

@@ -69,7 +69,7 @@ class Turret(ABC):
         """Sizes that place it, mm, by their names in reports."""
 
     @abstractmethod
-    def misled(self, radius: float, shown: Callable[[float], str]) -> tuple[str, str, str] | None:
+    def fault(self, radius: float, shown: Callable[[float], str]) -> tuple[str, str, str] | None:
         """Field, problem and remedy where rollers do not leave the cam at its ends, or meet it on their way back.
 
         The rollers have a radius, mm. `shown` writes a length, mm, in the recipe's unit. None without such a problem.
@@ -98,7 +98,7 @@ class BarrelTurret(Turret):
         """Pitch radius of the rollers, and offset."""
         return {"pitch_radius": self.form.pitch, "offset": self.form.offset}
 
-    def misled(self, radius: float, shown: Callable[[float], str]) -> tuple[str, str, str] | None:
+    def fault(self, radius: float, shown: Callable[[float], str]) -> tuple[str, str, str] | None:
         """Problem of rollers that turn back within the cam, stand far off its radius, or meet it behind the turret."""
         form = self.form
         pitch, room, away = form.pitch, LESS * form.floor, form.side * form.offset
@@ -157,7 +157,7 @@ class GloboidTurret(Turret):
         """Distance of both axes."""
         return {"distance": self.form.distance}
 
-    def misled(self, radius: float, shown: Callable[[float], str]) -> tuple[str, str, str] | None:  # noqa: ARG002
+    def fault(self, radius: float, shown: Callable[[float], str]) -> tuple[str, str, str] | None:  # noqa: ARG002
         """No problem: rollers leave a globoid outwards, and are far from it behind the turret's axis."""
         return None
 

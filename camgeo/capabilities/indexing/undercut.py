@@ -1,8 +1,9 @@
 """Whether a flank is regular in all of the metal: proved, or refused.
 
-In every layer a regular flank is a line along which the polar angle rises, and each roller touches it at one place
-alone: so where it is regular from floor to blank and from one end face to the other, no roller cuts into what another
-one leaves (`camgeo.capabilities.indexing.flank`: D > 0). It is proved in cells of shaft angles and rho.
+A flank is regular where D > 0 (`camgeo.capabilities.indexing.flank`). In every layer a regular flank is a line along
+which the polar angle rises, and each roller touches it at one place alone. If it is regular from floor to blank and
+from one end face to the other, no roller cuts into what another one leaves. D > 0 is proved in cells of shaft angles
+and rho; where an undercut is, and which roller would serve, is sampled.
 """
 
 from __future__ import annotations
@@ -52,7 +53,7 @@ def least_regular(flank: Flank) -> tuple[float, float, float]:
 
 
 def demand_regular(flank: Flank) -> None:
-    """Raise UndercutError where a flank is undercut in the metal, or where neither is proved."""
+    """Raise UndercutError where a flank is undercut in the metal, or where it is not proved that it is not."""
     least, at, layer = least_regular(flank)
     if least <= 0.0:
         raise UndercutError(f"the {NAMES[flank.side]} flank is undercut", at, layer)

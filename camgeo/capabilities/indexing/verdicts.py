@@ -100,5 +100,6 @@ def _flank(recipe: IndexRecipe, flank: FlankVerdict) -> dict[str, Any]:
     motion: dict[str, Any] = {}
     for key in ("max", "least", "most", "rms", "remainder"):
         motion[key], unit = in_units(recipe, getattr(flank.motion, key), "deg")
-    motion |= {"unit": unit, "at": flank.motion.at, "at_unit": "deg", "extremes": "proved"}
+    known = "sampled" if flank.pieces is None else "proved"  # lines of a development are looked at between points alone
+    motion |= {"unit": unit, "at": flank.motion.at, "at_unit": "deg", "extremes": known}
     return {"measured_error": error, "motion": motion}

@@ -283,7 +283,7 @@ def test_a_track_that_leaves_at_the_side() -> None:
 
 
 def test_rollers_that_come_back_into_the_cam() -> None:
-    told = BarrelTurret(Barrel(50.0, 13.0, 25.0, 25.0, 1, 15.0, 30.0)).misled(4.0, str)
+    told = BarrelTurret(Barrel(50.0, 13.0, 25.0, 25.0, 1, 15.0, 30.0)).fault(4.0, str)
     assert told is not None
     assert "meet the cam on their way back" in told[1]
-    assert BarrelTurret(Barrel(50.0, 13.0, 60.0, 60.0, 1, 35.0, 70.0)).misled(4.0, str) is None
+    assert BarrelTurret(Barrel(50.0, 13.0, 60.0, 60.0, 1, 35.0, 70.0)).fault(4.0, str) is None
