@@ -16,24 +16,17 @@ from camgeo.recipe.figures import LEAST_WALL, PRESSURE_ANGLE
 from camgeo.recipe.keys import CORE
 from camgeo.recipe.machining import MOST_RPM
 from camgeo.recipe.materials import material
+from camgeo.recipe.radii import radii_form
 from camgeo.registry.formats import FORMATS, Form
 from camgeo.registry.slot import NO_CHECK
-from camgeo.schema.errors import quote
-from camgeo.schema.fields import MOST, Field, FieldTable, Kind, OwnForm, length, mapping
-from camgeo.schema.json_schema import number_schema
-from camgeo.schema.read_scalar import read_numeric
-from camgeo.schema.yaml_source import Scalar, join
+from camgeo.schema.fields import MOST, Field, FieldTable, Kind, length, mapping
 from kin.numeric.records import replace
 
 if TYPE_CHECKING:
     from camgeo.registry.formats import Format
-    from camgeo.schema.fields import Schema
-    from camgeo.schema.reader import Reader
-    from camgeo.schema.yaml_source import Node
 
 FLOOR_GAP = 0.5  # mm that a roller stands off the floor where the recipe does not say where it ends
 LEAST_STOPS, MOST_STOPS = 2, 60
-MOST_RADII = 20  # of one development
 MOST_INERTIA = 1e6  # kg m^2
 OUTER = "outer"
 MIDDLE, INNER, OUTSIDE, ANY = (f"{PRESSURE_ANGLE}-{word}" for word in ("middle", "inner", "outer", "any"))
@@ -189,35 +182,6 @@ FIGURES = {
 
 LIMITS = limits_of(FIGURES)
 
-
-def _read_radii(reader: Reader, field: Field, node: Node, path: str) -> tuple[str | float, ...] | None:
-    """Read where a development is drawn: words, or radii in mm; None after a fault."""
-    found: list[str | float] = []
-    faults = len(reader.errors)
-    for i, item in enumerate(reader.items(field, node, path, MOST_RADII)):
-        if isinstance(item, Scalar) and item.text == OUTER:
-            found.append(item.text)
-            continue
-        told = len(reader.errors)
-        value = read_numeric(reader, length("at", field.about), item, join(path, i))
-        if len(reader.errors) > told:
-            last = reader.errors[-1]
-            reader.errors[-1] = replace(last, remedy=f"{last.remedy}, or {OUTER} for the blank")
-        if value is not None and value not in found:
-            found.append(value)
-        elif value is not None:
-            reader.fault(item.mark, join(path, i), "the same radius twice", quote(str(value)), "leave one out")
-    return tuple(found) if len(reader.errors) == faults else None
-
-
-def _radii_schema(_: Field) -> Schema:
-    item = {"anyOf": [{"enum": [OUTER]}, number_schema(length("", ""))]}
-    return {"type": "array", "items": item, "minItems": 1, "maxItems": MOST_RADII}
-
-
-_RADII: OwnForm[Reader] = OwnForm(
-    "a list of radii", f"a list of {OUTER} and radii, such as [{OUTER}, 38]", _read_radii, _radii_schema
-)
 DEVELOPMENT = "development"
 TABLE = "motion"
 
@@ -228,7 +192,13 @@ def _mesh(name: str, *options: Field) -> Format:
 
 def _development() -> Format:
     form = Field("as", Kind.CHOICE, "the flanks, unrolled", default=DEVELOPMENT, choices=(DEVELOPMENT,))
-    at = Field("at", Kind.OWN, "radii at which they are unrolled", default=f"[{OUTER}]", form=_RADII)
+    at = Field(
+        "at",
+        Kind.OWN,
+        "radii at which they are unrolled",
+        default=f"[{OUTER}]",
+        form=radii_form({OUTER: "for the blank"}),
+    )
     return replace(
         FORMATS["dxf"],
         options=FieldTable((form, at, RECIPE_UNITS, TOLERANCE)),
