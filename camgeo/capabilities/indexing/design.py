@@ -36,9 +36,9 @@ class IndexDesign:
     def flanks(self) -> dict[str, Flank]:
         """Flanks by name: `lower` with the metal below, `upper` with the metal above, of its own larger roller."""
         recipe = self.recipe
-        sizes = {"lower": recipe.roller.radius, "upper": recipe.roller.radius + recipe.clearance}
-        sides = {"lower": -1, "upper": 1}
-        return {name: Flank(recipe.form, self.law, recipe.start, sizes[name], sides[name]) for name in sizes}
+        sizes = (recipe.roller.radius, -1), (recipe.roller.radius + recipe.clearance, 1)
+        flanks = (Flank(recipe.form, self.law, recipe.start, *each) for each in sizes)
+        return {flank.name: flank for flank in flanks}
 
     def resized(self, radius: float) -> IndexDesign:
         """The same cam for rollers of another radius, mm."""

@@ -43,6 +43,7 @@ WIDEN, GROW = 1e-9, 1.5  # mm by which places along a roller are enclosed at fir
 SETTLE = 12  # rounds of enclosing
 WIDEST = TURN / 36.0  # rad between two points, however little a line bends
 MOST_POINTS = 2_000_000  # of one line
+FLANKS: tuple[Literal["lower", "upper"], ...] = ("lower", "upper")
 COLOURS = {"lower": 5, "upper": 1}  # of AutoCAD, by flank
 MARKS = "TURN"  # end of the name of the layer whose marks enclose a turn
 
@@ -154,11 +155,10 @@ def _enclosed(flank: Flank, cells: tuple[Array, Array], radius: float) -> Ball:
 def developed(design: IndexDesign, request: FileRequest, mm: float) -> list[Developed]:
     """Lines of a requested development, by their layers; `mm` is the drawing's unit."""
     chosen = request.own.get("at", (OUTER,))
-    names: tuple[Literal["lower", "upper"], ...] = ("lower", "upper")
     found = []
     for each in chosen:
         radius = design.recipe.form.blank if isinstance(each, str) else each
-        found += [Developed(f"R{radius / mm:.9g}_{name.upper()}", radius, name) for name in names]
+        found += [Developed(f"R{radius / mm:.9g}_{name.upper()}", radius, name) for name in FLANKS]
     return list({line.layer: line for line in found}.values())
 
 
@@ -191,8 +191,7 @@ def _by_turns(points: Array, turn: float) -> list[Array]:
 def unrolled(design: IndexDesign, tolerance: float) -> list[Array]:
     """Lines (n, 2), mm, of the flanks on the blank, with the blank's ends and the marks of a turn."""
     radius, length = design.recipe.form.blank, design.recipe.length
-    names: tuple[Literal["lower", "upper"], ...] = ("lower", "upper")
-    pieces = [piece for name in names for piece in drawn(design, Developed("", radius, name), tolerance).pieces]
+    pieces = [piece for name in FLANKS for piece in drawn(design, Developed("", radius, name), tolerance).pieces]
     turn = design.recipe.sense * TURN * radius
     edges = [np.array([[0.0, z], [turn, z]]) for z in (0.0, length)]
     return [*pieces, *edges, *(_mark(at, length) for at in (0.0, turn))]

@@ -90,6 +90,11 @@ class Flank:
     radius: float
     side: int
 
+    @property
+    def name(self) -> str:
+        """`lower` with the metal below the roller, `upper` with the metal above it."""
+        return "lower" if self.side < 0 else "upper"
+
     def pose(self, theta: Array, at: Side = 1) -> Pose:
         """The turret at shaft angles (n,), rad; at a break of one side."""
         return Pose.at(self.law.derivatives(theta, 3, at), self.start)

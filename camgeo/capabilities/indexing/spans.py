@@ -21,7 +21,6 @@ SEEK = 720  # shaft angles of a turn at which ends are sought
 LAYERS = 9  # at which a cam is looked at
 SETTLED = 1e-12  # rad: the last step to an end
 MARGIN = 0.1  # rad on the turret beyond the ends of the cam, over which a track is sought
-NAMES = {-1: "lower", 1: "upper"}
 
 
 class TrackError(CurveError):
@@ -82,7 +81,7 @@ def _brackets(flank: Flank, w: Array) -> tuple[Array, Array]:
         z = np.where(np.isfinite(rho), flank.contact(theta, pose, rho).z, np.nan)
         inside = (z > 0.0) & (z < length)
         if not inside.any():
-            problem = f"the {NAMES[flank.side]} flank does not pass between the end faces"
+            problem = f"the {flank.name} flank does not pass between the end faces"
             raise TrackError(problem, float(theta[theta.size // 2]), "set the turret to the middle of the cam")
         run = np.flatnonzero(inside)
         first, last = int(run[0]), int(run[-1])
@@ -92,7 +91,7 @@ def _brackets(flank: Flank, w: Array) -> tuple[Array, Array]:
             raise _missed(flank, float(theta[last if enters else first]), "upper" if enters else "lower")
         if run.size != last - first + 1:
             gap = int(run[np.argmax(np.diff(run) > 1)])
-            problem = f"the {NAMES[flank.side]} flank leaves the cam and comes back"
+            problem = f"the {flank.name} flank leaves the cam and comes back"
             raise TrackError(problem, float(theta[gap]), "let the turret advance without turning back")
         found[:, 0, j] = theta[first - 1], theta[first]
         found[:, 1, j] = theta[last], theta[last + 1]
@@ -101,7 +100,7 @@ def _brackets(flank: Flank, w: Array) -> tuple[Array, Array]:
 
 def _missed(flank: Flank, theta: float, name: str) -> TrackError:
     return TrackError(
-        f"the {NAMES[flank.side]} flank does not reach the {name} end face: the roller leaves the cam at its side",
+        f"the {flank.name} flank does not reach the {name} end face: the roller leaves the cam at its side",
         theta,
         "give a shorter part.length",
     )

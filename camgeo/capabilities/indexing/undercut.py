@@ -14,7 +14,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from camgeo.capabilities.indexing.bends import pose_over
-from camgeo.capabilities.indexing.spans import NAMES, angles_of, breaks_within, layers_of
+from camgeo.capabilities.indexing.spans import angles_of, breaks_within, layers_of
 from camgeo.curve.curve import CurveError
 from kin.numeric.angles import TURN
 from kin.numeric.interval import Ball
@@ -56,7 +56,7 @@ def demand_regular(flank: Flank) -> None:
     """Raise UndercutError where a flank is undercut in the metal, or where it is not proved that it is not."""
     least, at, layer = least_regular(flank)
     if least <= 0.0:
-        raise UndercutError(f"the {NAMES[flank.side]} flank is undercut", at, layer)
+        raise UndercutError(f"the {flank.name} flank is undercut", at, layer)
     low, high = flank.form.reach(flank.radius)
     # behind an end face, too: a flank that turns back there might come back into the metal
     begin, end = angles_of(flank)[[0, -1]].tolist()
@@ -77,7 +77,7 @@ def demand_regular(flank: Flank) -> None:
         t, rho = 0.5 * (a + b), 0.5 * (c + d)
         a, b = np.concatenate([a, t, a, t]), np.concatenate([t, b, t, b])
         c, d = np.concatenate([c, c, rho, rho]), np.concatenate([rho, rho, d, d])
-    problem = f"the {NAMES[flank.side]} flank is so near to an undercut that it can be neither proved nor excluded"
+    problem = f"the {flank.name} flank is so near to an undercut that it can be neither proved nor excluded"
     raise UndercutError(problem, float(a[0]), float(flank.along(a[:1], c[:1]).w[0]))
 
 
