@@ -413,7 +413,7 @@ _DELTA = mapping(
     Field(
         "harmonics",
         Kind.INTEGER,
-        "highest harmonic of that D, of 1, 3, 5, ..",
+        "highest harmonic of the D that is found for `law`, one of 1, 3, 5, ..",
         default=str(HARMONICS),
         at_least=1,
         at_most=31,

@@ -36,13 +36,17 @@ def decimal(text: str) -> float:
 
 
 def length(text: str) -> float:
-    """Length of a text, mm; raises ArgumentTypeError for what is no number."""
+    """Length of a text, mm, with a unit or in mm: 9.525 or 0.375in; raises ArgumentTypeError for what is none."""
+    from camgeo.schema.quantity import read_quantity
+    from camgeo.schema.scalars import Complaint
+
     try:
-        return decimal(text)
-    except ValueError:
-        raise argparse.ArgumentTypeError(f"a length in mm is expected, not {text}") from None
+        return read_quantity(text, "mm")
+    except Complaint:
+        remedy = f"a length in mm or with its unit is expected, such as 9.525 or 0.375in, not {text}"
+        raise argparse.ArgumentTypeError(remedy) from None
 
 
 def lengths(text: str) -> tuple[float, ...]:
-    """Lengths, mm, of a text such as `80,65`; raises ArgumentTypeError for another."""
+    """Lengths, mm, of a text such as `80,65` or `3in,2in`; raises ArgumentTypeError for another."""
     return tuple(length(part) for part in text.split(","))

@@ -270,7 +270,7 @@ def _watch(arguments: argparse.Namespace) -> int:
         if outcome.report is None:
             complain(outcome.message)
             return None, outcome.message
-        _show(dict(outcome.report), verbose=arguments.verbose)
+        _show(dict(outcome.report), outcome.report.recipe, verbose=arguments.verbose, folder=outcome.report.path)
         sys.stdout.flush()  # a pipe hears of each saving too
         assert outcome.report.path is not None
         return (outcome.report.path / page.filename(recipe.name, (page,))).read_text("utf-8"), ""
@@ -341,7 +341,7 @@ def _run_recipes(
             if not arguments.json:
                 if arguments.verbose and len(entries) > 1:
                     say("")
-                _show(report, verbose=arguments.verbose)
+                _show(report, outcome.report.recipe, verbose=arguments.verbose, folder=outcome.report.path)
         if outcome.message:
             complain(outcome.message)
         if outcome.report is None:
@@ -366,10 +366,37 @@ def _tell_of_mixture(report: Entry, mixed: Sequence[str]) -> None:
         _complain(text)
 
 
-def _show(report: Entry, *, verbose: bool) -> None:
+def _show(report: Entry, recipe: Order, *, verbose: bool, folder: Path | None = None) -> None:
+    """Print the report on a recipe.
+
+    Where a check fails, its remedy follows, and the `folder` that the files of this run went to, if there is one.
+    """
     from camgeo.report.document import summary, table, verdict
 
-    say(f"{table(report)}\n\n{verdict(report)}" if verbose else summary(report))
+    told = _remedies(report, recipe)
+    if folder is not None and not report["ok"]:
+        kept = escaped(str(folder.with_name(report["recipe"])))
+        told.append(f"  the files of this run are in {escaped(str(folder))}; {kept} is left as it was")
+    if verbose:  # the verdict is the last line
+        *lines, last = f"{table(report)}\n\n{verdict(report)}".split("\n")
+        say("\n".join([*lines, *told, last]))
+    else:
+        say("\n".join([summary(report), *told]))
+
+
+def _remedies(report: Entry, recipe: Order) -> list[str]:
+    """Lines of what would let the failed checks of a report hold, each remedy once."""
+    failed = [check for check in report["checks"] if not check["ok"]]
+    if not failed:
+        return []
+    from camgeo.api.report import explanation
+    from camgeo.report.failure import remedy_in
+
+    known: dict[str, str] = {}
+    for check in failed:
+        if words := remedy_in(explanation(check, report, recipe)):
+            known.setdefault(words, check["name"])
+    return [f"  remedy for {name}: {escaped(words)}" for words, name in known.items()]
 
 
 # --- the other commands -----------------------------------------------------------------------------------------------
@@ -415,7 +442,7 @@ def _verify(arguments: argparse.Namespace) -> int:
     elif name := claims.judge_of(paths[0], options):
         say(TERMINAL[name].shown(report, arguments.verbose))
     else:
-        _show(report, verbose=arguments.verbose)
+        _show(report, recipe, verbose=arguments.verbose)
     return OK if report["ok"] else FAILED
 
 

@@ -221,8 +221,8 @@ class Stack:
             edges = near.edges[k], ribs[(k + 1) % count], far.edges[k], ribs[k]
             self.face(_chamfer_surface(k, (small, z), (large, z_far)), edges)
 
-    def face(self, surface: Shape, edges: Sequence[Shape]) -> None:
-        """Add the face of a surface within edges, which follow one another.
+    def face(self, surface: Shape, edges: Sequence[Shape], holes: Sequence[Sequence[Shape]] = ()) -> None:
+        """Add the face of a surface within edges and outside those of its holes, which follow one another.
 
         An edge without a curve in the surface's parameters gets one, and is as wide as it lies beside the surface.
         """
@@ -231,13 +231,14 @@ class Stack:
         from OCP.ShapeFix import ShapeFix_Edge, ShapeFix_Face
         from OCP.TopoDS import TopoDS_Face
 
-        maker = BRepBuilderAPI_MakeWire()
-        for edge in edges:
-            maker.Add(_cast(edge, "edge"))
         face = TopoDS_Face()
         builder = BRep_Builder()
         builder.MakeFace(face, surface, CONFUSION)
-        builder.Add(face, maker.Wire())
+        for loop in (edges, *holes):
+            maker = BRepBuilderAPI_MakeWire()
+            for edge in loop:
+                maker.Add(_cast(edge, "edge"))
+            builder.Add(face, maker.Wire())
         for edge in _parts(face, "edge"):
             fix = ShapeFix_Edge()
             fix.FixAddPCurve(edge, face, False, CONFUSION)

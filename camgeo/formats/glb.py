@@ -45,13 +45,16 @@ class Actor:
     """A named mesh, mm, its colour "#rrggbb", and its pose (n, 3) at equal steps of a turn, or (1, 3) at rest.
 
     The pose is x and y, mm, and an angle, rad, that goes on from step to step without jumps of a turn. The first row
-    is for the start of the turn, the last one for its end.
+    is for the start of the turn, the last one for its end. The angle is about the direction `axis`, a unit vector, at
+    the height z, mm.
     """
 
     name: str
     mesh: Mesh
     pose: Array
     colour: str
+    axis: tuple[float, float, float] = (0.0, 0.0, 1.0)
+    height: float = 0.0
 
 
 def write_glb(path: Path, actors: Sequence[Actor], *, title: str) -> None:
@@ -69,11 +72,10 @@ def write_glb(path: Path, actors: Sequence[Actor], *, title: str) -> None:
     for k, actor in enumerate(actors):
         meshes.append(_mesh(buffer, actor, k))
         materials.append(_material(actor))
-        shift = _y_up(np.column_stack((actor.pose[:, :2], np.zeros(len(actor.pose)))))
-        # a turn by a about y is the quaternion (0, sin a/2, 0, cos a/2)
-        half = 0.5 * actor.pose[:, 2]
-        zero = np.zeros(len(half))
-        turn = np.column_stack((zero, np.sin(half), zero, np.cos(half))).astype("<f4")
+        shift = _y_up(np.column_stack((actor.pose[:, :2], np.full(len(actor.pose), actor.height))))
+        # a turn by a about a unit vector u is the quaternion (u sin a/2, cos a/2)
+        half, (x, y, z) = 0.5 * actor.pose[:, 2], actor.axis
+        turn = np.column_stack((np.outer(np.sin(half), (x, z, -y)) + 0.0, np.cos(half))).astype("<f4")
         nodes.append({"name": actor.name, "mesh": k, "translation": shift[0].tolist(), "rotation": turn[0].tolist()})
         steps = len(actor.pose)
         if steps == 1:

@@ -101,6 +101,8 @@ def read_contours(reader: Reader, file: str, path: str, how: ContourReading) -> 
         problem = error.message
         if error.closing is not None:
             remedy = f"give gap: {upward(error.closing / how.unit, 2)} beside it to join them"
+        elif error.cams:
+            remedy = "move the cam in its file until its shaft is there"
     except OSError as error:
         problem = error.strerror or str(error)
     except ValueError as error:

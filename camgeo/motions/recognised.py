@@ -14,6 +14,7 @@ if TYPE_CHECKING:
 MOST_LEFT = 2.0  # readings by which laws may be off: beyond, a motion is a table
 ROUND = (1.0, 0.5, 0.1, 0.05, 0.01, 0.005, 0.001, 0.0005, 0.0001)  # steps of written numbers, coarsest first
 AT_ZERO = 3.0  # degrees: a stroke that ends or begins so near the turn's beginning is tried as one that does so there
+ANGLES = 9  # decimals of a degree in texts: what is less is rounding
 STROKES_BEGIN = "the turn begins within a stroke"
 
 
@@ -38,9 +39,17 @@ class Recognised(NamedTuple):
         """Position at which a recipe's displacement is 0: the least over a turn, the first over a part of one."""
         return float(self.programme.levels.min() if self.motion.closed else self.programme.levels[0])
 
+    @property
+    def left(self) -> float:
+        """Greatest distance of the motion from its segments as they are written, mm or rad."""
+        pairs = zip(self.programme.boundaries.tolist(), self.programme.uncertainty[0].tolist(), strict=True)
+        boundaries = np.radians([self.angle(boundary, off) for boundary, off in pairs])
+        levels = self.zero + np.array(self._heights()) / self.scale
+        return self.programme.written(self.motion, boundaries, levels).greatest
+
     def segments(self) -> tuple[list[Value] | None, str]:
         """Segments of the motion from angle 0 on, in the unit and degrees; else None, and the reason."""
-        motion, programme, whole = self.motion, self.programme, math.degrees(self.motion.span)
+        programme, whole = self.programme, math.degrees(self.motion.span)
         angles = [
             self.angle(float(k), float(off))
             for k, off in zip(programme.boundaries, programme.uncertainty[0], strict=True)
@@ -49,9 +58,7 @@ class Recognised(NamedTuple):
         if any(0.0 < angles[stroke.last] < angles[stroke.first] for stroke in order):
             return None, STROKES_BEGIN
         # rounded, the strokes must still fit the positions
-        heights = self._heights()
-        levels = self.zero + np.array(heights) / self.scale
-        left = programme.written(motion, np.radians(angles), levels).greatest
+        heights, left = self._heights(), self.left
         if left > self.most:
             return None, f"the laws that fit best leave {self.shown(left):.3g} {self.unit}"
         segments: list[Value] = []
@@ -89,6 +96,7 @@ class Recognised(NamedTuple):
         for number, stroke in enumerate(order, start=1):
             begin, end = (math.degrees(programme.boundaries[k]) for k in (stroke.first, stroke.last))
             begin = math.remainder(begin, 360.0) if begin > 360.0 - AT_ZERO else begin
+            begin = round(begin, ANGLES)
             end = begin + (end - begin) % 360.0
             widest = max(math.degrees(unsure[k]) for k in (stroke.first, stroke.last))
             height = self.shown(float(programme.levels[stroke.high] - programme.levels[stroke.low]))
@@ -110,3 +118,10 @@ def roundest(value: float, uncertainty: float) -> float:
         if abs(near - value) <= max(uncertainty, 0.5 * ROUND[-1]):
             return float(f"{near:.9g}")
     return float(f"{value:.9g}")
+
+
+def in_flow(value: Value) -> str:
+    """A segment on one line of YAML, its numbers to nine digits."""
+    if isinstance(value, dict):
+        return f"{{{', '.join(f'{key}: {in_flow(entry)}' for key, entry in value.items())}}}"
+    return f"{value:.9g}" if isinstance(value, float) else str(value)

@@ -295,7 +295,7 @@ def _law_table(over: Input) -> FieldTable:
                 Field(
                     "blend",
                     Kind.OWN,
-                    "over which it comes to that velocity and to rest; 0 of none",
+                    "angles at its beginning and end over which it comes to that velocity and to rest; 0 for none",
                     True,
                     form=blend,
                 ),

@@ -51,6 +51,7 @@ if TYPE_CHECKING:
 
 T = TypeVar("T")
 ANGLES = 3600  # of a turn at which files are judged
+OF_ALL_KINDS = ("name", "about", "units", "rotation")  # keys that recipes of all kinds of cams have
 
 
 @dataclass(frozen=True)
@@ -417,8 +418,8 @@ def _read(source: Source, capabilities: tuple[str, ...]) -> tuple[Reader, Values
     values = read_values(reader, capabilities)
     cam = entries(source.root).get(CAM) if isinstance(source.root, Mapping) else None
     if isinstance(cam, Mapping) and "kind" in entries(cam) and not kind_of(cam, CAMS):
-        # of a kind that there is not, no other key is at fault
-        reader.errors = [error for error in reader.errors if error.path == f"{CAM}.kind"]
+        # which keys a kind takes is not known of one that there is not
+        reader.errors = [error for error in reader.errors if error.path in {f"{CAM}.kind", *OF_ALL_KINDS}]
     return reader, values
 
 

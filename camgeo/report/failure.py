@@ -55,6 +55,12 @@ def headline(check: dict[str, Any]) -> str:
     return f"{text}: " + ", ".join(part for part in parts if part)
 
 
+def remedy_in(explained: str) -> str:
+    """Remedy of a text that `failure_at` gives, with file, line and column; empty where no remedy is known."""
+    rows = {row[:9].strip(): row[9:] for row in explained.split(INDENT)[1:]}
+    return f"{rows['remedy']} ({rows['recipe'].rpartition(' ')[0]})" if "remedy" in rows else ""
+
+
 def remedy(check: dict[str, Any], report: dict[str, Any], recipe: Recipe) -> str:
     """Sentence on a change of the recipe that would let the check hold; empty where none is known."""
     declared = declaration(check["name"])

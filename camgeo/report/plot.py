@@ -20,7 +20,7 @@ class Series:
 
 @dataclass(frozen=True, eq=False)
 class Plot:
-    """Curves over the shaft angle or the relative angle, in `unit`.
+    """Curves over the shaft angle or the relative angle, in `unit`, which is empty of counts.
 
     `limits` are lines across, pairs (value, name); with `dwells` the dwells are shaded; `note` stands below. `axis` is
     the quantity's name beside the upright axis, by default the title. That axis always spans the values of `holds`: 0

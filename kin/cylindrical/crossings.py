@@ -36,6 +36,7 @@ OWN = 1e-6  # mm: a point so far within its own turn lies on an undercut
 PLACES = 3  # along the roller
 LOOKS, LINE_LOOKS = 720, 4096  # angles of a turn, between which gaps, and places of a line, are looked for
 ROOM = 1.1  # of the roller's radius, within which others are looked for
+NEAR_END = 0.02  # of the roller's reach, by which places on cylinders lie within its ends: so does a line near by
 HALVINGS = 20  # of a step, in which a gap begins or ends
 PARTS = 64  # of a gap, over which its length is summed
 
@@ -56,17 +57,25 @@ class Crossings:
     gauges: tuple[Gauge, ...]
     tolerance: float
 
-    def carried(self, gauge: Gauge, count: int) -> Mask:
-        """Whether (n,) a flank carries the roller at so many equal steps of the period, and half a step beside them."""
+    def carried(self, gauge: Gauge, count: int, radii: Array | None = None) -> Mask:
+        """Whether (n,) a flank carries the roller at so many equal steps of the period, and a step beside them.
+
+        It does where it stands at some place along the roller, or on some of the cylinders of `radii` (m,), mm.
+        """
         if gauge.lifts.turns == 1:
             return np.ones(count, dtype=np.bool_)
         theta: Array = np.arange(count) * np.float64(gauge.lifts.period / count)
         held = np.zeros(count, dtype=np.bool_)
         inner, outer = gauge.inner, np.minimum(gauge.outer, self._on(gauge, theta, self.drum.radius)[0])
-        for share in np.linspace(0.0, 1.0, PLACES):
-            open_ = np.flatnonzero(~held)
-            rho: Array = inner + share * (outer[open_] - inner)
-            held[open_] = _is_wall(self._outside(gauge, theta[open_], rho), MARGIN * self.tolerance)
+        if radii is None:
+            rows = inner + np.linspace(0.0, 1.0, PLACES)[:, None] * (outer - inner)
+            within = np.ones(rows.shape, dtype=np.bool_)
+        else:
+            rows, room = np.stack([self._on(gauge, theta, r)[0] for r in radii.tolist()]), NEAR_END * gauge.reach
+            within = (rows >= inner + room) & (rows <= outer - room)
+        for rho, inside in zip(rows, within, strict=True):
+            open_ = np.flatnonzero(inside & ~held)
+            held[open_] = _is_wall(self._outside(gauge, theta[open_], rho[open_]), MARGIN * self.tolerance)
         # its neighbours tell what lies between them
         return held & np.roll(held, 1) & np.roll(held, -1)
 

@@ -1,7 +1,8 @@
 """The verdict on a solid of exact surfaces: B-spline flanks by contact, planes and cylinders as they are.
 
 Each face is held against that of the intended drum to which it is nearest. Together with a closed shell, whose faces
-look outward, and the volume that says that nothing of the drum is missing (`kin.cylindrical.judge`).
+look outward, and the volume that says that nothing of the drum is missing (`kin.cylindrical.judge`). A surface of a
+groove of several turns belongs to the turn and flank that it is nearest to.
 """
 
 from __future__ import annotations
@@ -16,7 +17,6 @@ from kin.contour.holes import farthest
 from kin.cylindrical.crossings import Crossings
 from kin.cylindrical.edges import Peak
 from kin.cylindrical.faces import BLANK, BORE, BOTTOM, FINE, FLOOR, TOP
-from kin.cylindrical.figures import exact_play
 from kin.cylindrical.gauge import gauges_of
 from kin.cylindrical.judge import (
     CONTOUR,
@@ -28,14 +28,15 @@ from kin.cylindrical.judge import (
     motion_check,
     plain_checks,
     play_check,
+    stretches,
     volume_check,
 )
-from kin.cylindrical.smooth import Smooth, look, off_flank
+from kin.cylindrical.play import exact_play
+from kin.cylindrical.smooth import BINS, Crossed, Smooth, look, off_flank
 from kin.cylindrical.verdict import DrumVerdict, FlankVerdict, MotionError
-from kin.numeric.angles import TURN, degrees
+from kin.numeric.angles import TURN
 from kin.numeric.check import ROUNDING, Check, about, failed
 from kin.numeric.errors import UnsettledError
-from kin.numeric.feet import equal_steps
 from kin.numeric.records import dataclass, replace
 from kin.read.checks import count_check, unread_check
 from kin.read.errors import ReadError
@@ -47,11 +48,10 @@ if TYPE_CHECKING:
     from collections.abc import Sequence
     from pathlib import Path
 
-    from kin.cylindrical.guide import Unit
     from kin.cylindrical.intent import DrumIntent, Limits
     from kin.cylindrical.roller import Gauge
     from kin.cylindrical.smooth import SeenSmooth
-    from kin.numeric.arrays import Array
+    from kin.numeric.arrays import Array, Mask
     from kin.read.step.faces import Face
     from kin.read.step.shell import Shell
 
@@ -86,29 +86,26 @@ def verify_surfaces(path: Path, drum: DrumIntent, limits: Limits) -> DrumVerdict
 
 def judge_shell(shell: Shell, drum: DrumIntent, limits: Limits, kind: str = "") -> DrumVerdict:
     """Judge a solid of exact surfaces, mm, as its file has it."""
-    if drum.follower.turns > 1:
-        why = "a groove of several turns is judged on triangles alone: give an STL"
-        return DrumVerdict(kind, (failed(CONTOUR, why, unit="mm", limit=limits.tolerance),), units=shell.units_mm)
     gauges = gauges_of(drum)
     checks = [count_check(WATERTIGHT, shell.faults(limits.tolerance))]
     verdicts, seen, play = [], [], None
     slack = ROUNDING * max(drum.radius, drum.length)
     try:
         found = _sorted(shell, drum, gauges, limits.tolerance)
-        job = Judged(gauges, drum, limits, slack)
+        job, crossings = Judged(gauges, drum, limits, slack), Crossings(drum, gauges, limits.tolerance)
         checks += plain_checks(job, found.off)
         for gauge in gauges:
-            flank, own_seen, own = _flank(job, gauge, found.flanks[gauge.name])
+            flank, own_seen, own = _flank(job, gauge, found.flanks[gauge.name], crossings)
             verdicts.append(flank)
             seen.append(own_seen)
             checks += [replace(check, surface=flank.name) for check in own]
         both = [each for each, flank in zip(seen, verdicts, strict=True) if each is not None and flank.motion]
-        if len(both) > 1:
-            pinched = both[0].holds + both[1].holds
-            theta = equal_steps(ANGLES)
+        if len(both) > 1 and (held := both[0].carried & both[1].carried).any():
+            pinched = (both[0].holds + both[1].holds)[held]
+            theta = np.flatnonzero(held) * np.float64(TURN / ANGLES)
             play, check = play_check(job, pinched, exact_play(drum, theta) - pinched, theta)
             checks.append(check)
-        checks += led_checks(Crossings(drum, gauges, limits.tolerance))
+        checks += led_checks(crossings)
         checks.append(volume_check(drum, gauges, (shell.volume, shell.area), limits.tolerance))
     except UnsettledError as error:
         checks.append(failed(CONTOUR, str(error), unit="mm", limit=limits.tolerance))
@@ -116,7 +113,7 @@ def judge_shell(shell: Shell, drum: DrumIntent, limits: Limits, kind: str = "") 
 
 
 def _flank(
-    job: Judged, gauge: Gauge, surfaces: Sequence[Smooth]
+    job: Judged, gauge: Gauge, surfaces: Sequence[Smooth], crossings: Crossings
 ) -> tuple[FlankVerdict, SeenSmooth | None, list[Check]]:
     """Verdict on one flank, what was seen of it, and its checks."""
     tolerance = job.limits.tolerance
@@ -124,27 +121,33 @@ def _flank(
     if not count:
         nothing = failed(CONTOUR, "the flank is missing", unit="mm", limit=tolerance)
         return FlankVerdict(gauge.name), None, [nothing]
-    seen = look(gauge, surfaces, tolerance, ANGLES)
+    turns = gauge.lifts.turns
+
+    def carries(radii: Array) -> Mask:
+        held = crossings.carried(gauge, BINS * turns, radii)
+        return held & np.roll(held, -1)
+
+    seen = look(gauge, surfaces, tolerance, ANGLES * turns, Crossed(job.gauges, carries) if turns > 1 else None)
     check, worst = contour_check(job, seen.proud, seen.bare)
-    if not (math.isfinite(seen.least.remainder) and np.isfinite(seen.holds).all()):
-        free = int(np.argmin(np.isfinite(seen.holds)))
-        why = f"the roller touches nothing at an angle of {degrees(free * TURN / ANGLES):.6g} degrees"
-        return FlankVerdict(gauge.name, None, worst, count), seen, [check, failed(MOTION, why, unit=job.unit)]
-    motion = _motion_error(seen, job.told, job.unit)
-    checks = [check, motion_check(job, motion, gauge)]
-    return FlankVerdict(gauge.name, motion, worst, count), seen, checks
+    free = stretches(seen.carried, TURN / ANGLES)
+    loose = ~np.isfinite(seen.holds) & seen.carried
+    if not (math.isfinite(seen.least.remainder) and seen.carried.any()) or loose.any():
+        angle = gauge.lifts.degrees(int(np.argmax(loose)) * TURN / ANGLES)
+        why = f"the roller touches nothing at an angle of {angle:.6g} degrees"
+        return FlankVerdict(gauge.name, None, worst, count, free), seen, [check, failed(MOTION, why, unit=job.unit)]
+    motion = _motion_error(seen, job, gauge)
+    checks = [check, motion_check(job, motion, gauge, free)]
+    return FlankVerdict(gauge.name, motion, worst, count, free), seen, checks
 
 
-def _motion_error(seen: SeenSmooth, told: float, unit: Unit) -> MotionError:
-    """Error of the motion, from mm of travel to a unit by the factor `told`."""
-    low, high = seen.least, seen.out
+def _motion_error(seen: SeenSmooth, job: Judged, gauge: Gauge) -> MotionError:
+    """Error of the motion where the flank is to carry the roller."""
+    low, high, told = seen.least, seen.out, job.told
     worst = high if high.value >= -low.value else Peak(-low.value, low.at, low.remainder)
     bound = max(high.value + high.remainder, low.remainder - low.value)
-    rms = float(np.sqrt(np.mean(seen.holds**2)))
-    left = told * max(bound - worst.value, 0.0)
-    return MotionError(
-        told * worst.value, degrees(worst.at), left, told * low.value, told * high.value, told * rms, unit
-    )
+    rms = float(np.sqrt(np.mean(seen.holds[seen.carried] ** 2)))
+    left, place = told * max(bound - worst.value, 0.0), gauge.lifts.degrees(worst.at)
+    return MotionError(told * worst.value, place, left, told * low.value, told * high.value, told * rms, job.unit)
 
 
 # --- which face is which ----------------------------------------------------------------------------------------------
@@ -161,12 +164,16 @@ def _sorted(shell: Shell, drum: DrumIntent, gauges: tuple[Gauge, ...], tolerance
     def note(name: str, value: float) -> None:
         off[name] = value if math.isnan(off[name]) else max(off[name], value)
 
+    surfaces = [_smooth(own, mirrored=drum.mirrored) for own in _patches(shell)]
+    if surfaces:
+        ways = [(gauge, turn) for gauge in gauges for turn in range(drum.follower.turns)]
+        nearest = np.argmin([off_flank(gauge, surfaces, turn) for gauge, turn in ways], axis=0)
+        for surface, (gauge, turn) in zip(surfaces, (ways[k] for k in nearest), strict=True):
+            flanks[gauge.name].append(replace(surface, about=surface.near + TURN * turn))
     for face in shell.faces:
         if isinstance(face.surface, Patch):
-            surface = _smooth(face.surface, mirrored=drum.mirrored)
-            gauge = min(gauges, key=lambda each, surface=surface: off_flank(each, surface))  # type: ignore[misc]
-            flanks[gauge.name].append(surface)
-        elif face.surface.level:
+            continue
+        if face.surface.level:
             z = face.heights[0]
             name = BOTTOM if abs(z) <= abs(z - drum.length) else TOP
             note(name, abs(z - (0.0 if name == BOTTOM else drum.length)))
@@ -175,6 +182,11 @@ def _sorted(shell: Shell, drum: DrumIntent, gauges: tuple[Gauge, ...], tolerance
             name = min(distances, key=lambda each: distances[each])
             note(name, distances[name])
     return _Sorted(off, flanks)
+
+
+def _patches(shell: Shell) -> list[Patch]:
+    """B-spline surfaces of a solid."""
+    return [face.surface for face in shell.faces if isinstance(face.surface, Patch)]
 
 
 def _off_walls(shell: Shell, face: Face, drum: DrumIntent, tolerance: float) -> dict[str, float]:
@@ -188,7 +200,7 @@ def _off_walls(shell: Shell, face: Face, drum: DrumIntent, tolerance: float) -> 
         else:
             points = np.concatenate([edge.samples for edge, _ in face.uses])
             found[name] = float(np.abs(np.hypot(points[:, 0], points[:, 1]) - radius).max())
-    if drum.bore is not None:
+    if drum.bore is not None and not min(found.values()) <= tolerance:
         arcs = _section(shell, face, mirrored=drum.mirrored)
         outline = drum.bore.contour.as_arcs()[0]
         bend = max(float(np.abs(part.curvature).max(initial=0.0)) for part in (arcs, outline))
@@ -232,5 +244,6 @@ def _smooth(patch: Patch, *, mirrored: bool) -> Smooth:
         nets, v = nets.transpose(1, 0, 3, 2, 4), patch.u
     share = (v - v[0]) / (v[-1] - v[0])
     count, deep = nets.shape[:2]
+    about = np.unwrap(np.arctan2(nets[:, 0, 0, 0, 1], nets[:, 0, 0, 0, 0]))
     lines = np.tile(np.stack([share[:-1], share[1:]], axis=1), (count, 1))
-    return Smooth(np.ascontiguousarray(nets.reshape(count * deep, *nets.shape[2:])), lines)
+    return Smooth(np.ascontiguousarray(nets.reshape(count * deep, *nets.shape[2:])), lines, np.repeat(about, deep))

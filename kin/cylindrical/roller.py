@@ -352,9 +352,9 @@ class Gauge:
         phi: Array = np.arctan2(points[:, 1], points[:, 0])
         return phi if about is None else phi + TURN * np.round((about - phi) / TURN)
 
-    def peaked(self, points: Array) -> Array:
-        """Angles (n,), rad, near a peak of F of points (n, 3), of several near any of them."""
-        place = Place(np.arctan2(points[:, 1], points[:, 0]), np.hypot(points[:, 0], points[:, 1]), points[:, 2])
+    def peaked(self, points: Array, about: Array | None = None) -> Array:
+        """Angles (n,), rad, near a peak of F of points (n, 3), of several near any; `about` (n,) as of `worst`."""
+        place = Place(self.polar(points, about), np.hypot(points[:, 0], points[:, 1]), points[:, 2])
         return self._climbed(self._guessed(place.phi, place.r), place)
 
     def _distance(self, theta: Array, stand: Stand) -> Array:

@@ -28,6 +28,10 @@ place of the roller between both, T along its path. All of the above is true of 
 G as well, and is proved for these.
 
 At every shaft angle some place of a line t = const holds the roller, if the line goes round: as high as H at least.
+
+A groove of several turns crosses itself. Its patches lie in one turn each, and lines go as far as a wall stands. All of
+it has to leave the rollers of other turns room: a place lies within the way of one if F of both its flanks is above 0,
+and no deeper than the bounds of either flank say.
 """
 
 from __future__ import annotations
@@ -39,6 +43,7 @@ import numpy as np
 
 from kin.cylindrical.edges import Peak
 from kin.cylindrical.grid import FINE
+from kin.cylindrical.roller import BESIDE
 from kin.numeric.angles import TURN
 from kin.numeric.arrays import runs_of
 from kin.numeric.bernstein import halves, restrict
@@ -49,7 +54,7 @@ from kin.numeric.jet import BallJet
 from kin.numeric.records import dataclass
 
 if TYPE_CHECKING:
-    from collections.abc import Sequence
+    from collections.abc import Callable, Sequence
 
     from kin.cylindrical.roller import Gauge
     from kin.numeric.arrays import Array, Indices, Mask
@@ -60,6 +65,7 @@ FAR = 3.0  # times the tolerance: what is so far off need not be known more clos
 BINS = 2048  # parts of a turn, for each of which the roller is held
 WINDOW, ROOM, MOST_WINDOW = 0.004, 1.5, 0.1  # rad, about the worst angle, within which F falls; one with room; greatest
 NOTHING = 0.01  # of what bounds have to be close to: cells whose own bounds are below it need not be smaller
+AMPLE, SHARPER = 1.25, 0.5  # times the window that is needed; share of the one at hand, below which it is narrowed
 NARROWER = 3  # times that the window is a quarter, where F is not known to fall all over it
 LOOKS, DEPTHS, PARTINGS = 720, 8, 4  # cells of the proof that a flank is regular, and how often they are halved
 JUMP = 1e-9  # of the greatest jump of S'', mm per rad^2, below which one is rounding
@@ -75,28 +81,49 @@ class Smooth:
 
     nets   (n, p + 1, q + 1, 3) control points, mm
     lines  (n, 2) where t begins and ends, as shares of the surface's own depth
+    about  (n,) polar angles over all turns of the motion, rad, within half a turn of which patches lie; by default
+           in the first turn
     """
 
     nets: Array
     lines: Array
+    about: Array | None = None
+
+    @property
+    def near(self) -> Array:
+        """Polar angles (n,), rad, near those of patches."""
+        corners = self.nets[:, 0, 0]
+        return np.arctan2(corners[:, 1], corners[:, 0]) if self.about is None else self.about
 
 
 class SeenSmooth(NamedTuple):
     """What a surface shows to a roller, with proved bounds.
 
-    out    greatest way, mm along its path, by which the roller gives to the metal that it reaches
-    holds  (k,) at k equal steps of the turn: the roller stands so high over its intended place, mm, to a share of the
-           tolerance; nan where nothing holds it
-    least  least height at which it is held, over all angles, mm, with its angle, rad; its bound is below by `remainder`
-    proud  greatest distance, mm, of the surface out of the metal
-    bare   greatest distance, mm, of the surface into the metal
+    out      greatest way, mm along its path, by which the roller gives to the metal that it reaches
+    holds    (k,) at k equal steps of the period: the roller stands so high over its intended place, mm, to a share of
+             the tolerance; nan where nothing holds it
+    carried  (k,) where it is to be held
+    least    least height at which it is held there, mm, with its angle, rad; its bound is below by `remainder`
+    proud    greatest distance, mm, of the surface out of the metal, or into the roller of another turn
+    bare     greatest distance, mm, of the surface into the metal
     """
 
     out: Peak
     holds: Array
+    carried: Mask
     least: Peak
     proud: Peak
     bare: Peak
+
+
+class Crossed(NamedTuple):
+    """What a surface of several turns is held against: gauges of all flanks, and where its own is to carry.
+
+    `carries` says for lines at radii (m,), mm, in which of BINS equal parts of each turn some of them have to hold.
+    """
+
+    gauges: tuple[Gauge, ...]
+    carries: Callable[[Array], Mask]
 
 
 class _Cells(NamedTuple):
@@ -153,7 +180,7 @@ def cells_of(gauge: Gauge, surface: Smooth) -> _Cells:
     turned, back, shares = _parted(np.swapaxes(nets, 1, 2), across[own])
     own = own[back]
     lines = surface.lines[own, :1] + shares * depth[own, None]
-    return _measured(gauge, np.ascontiguousarray(np.swapaxes(turned, 1, 2)), lines)
+    return _measured(gauge, np.ascontiguousarray(np.swapaxes(turned, 1, 2)), lines, surface.near[own])
 
 
 def _parted(nets: Array, count: Indices) -> tuple[Array, Indices, Array]:
@@ -163,12 +190,27 @@ def _parted(nets: Array, count: Indices) -> tuple[Array, Indices, Array]:
     return restrict(nets[own], shares[:, 0], shares[:, 1]), own, shares
 
 
-def off_flank(gauge: Gauge, surface: Smooth) -> float:
-    """Distance, mm, of half of the corners of a surface from a flank, and no less of the other half."""
-    points = surface.nets[:, [0, -1]][:, :, [0, -1]].reshape(-1, 3)
-    height, _, distance, *_ = _standing(gauge, points, gauge.peaked(points))
+def _alike(surfaces: Sequence[Smooth]) -> list[Smooth]:
+    """Surfaces of the same degrees as one each."""
+    groups: dict[tuple[int, ...], list[Smooth]] = {}
+    for surface in surfaces:
+        groups.setdefault(surface.nets.shape[1:], []).append(surface)
+    return [
+        Smooth(*(np.concatenate([getattr(each, name) for each in own]) for name in ("nets", "lines", "near")))
+        for own in groups.values()
+    ]
+
+
+def off_flank(gauge: Gauge, surfaces: Sequence[Smooth], turn: int = 0) -> Array:
+    """Distances (n,), mm, of half of the corners of surfaces from a flank in a turn, and no less of the other half."""
+    corners = [surface.nets[:, [0, -1]][:, :, [0, -1]].reshape(-1, 3) for surface in surfaces]
+    about = np.concatenate([np.repeat(surface.near, 4) for surface in surfaces]) + TURN * turn
+    points = np.concatenate(corners)
+    height, _, distance, *_ = _standing(gauge, points, gauge.peaked(points, about))
     off = np.where(height < gauge.largest, np.abs(distance), np.inf)
-    return float(np.median(np.where(np.isfinite(off), off, np.inf)))
+    off = np.where(np.isfinite(off), off, np.inf)
+    found = np.split(off, np.cumsum([len(each) for each in corners])[:-1])
+    return np.array([np.median(each) for each in found])
 
 
 def _turned(nets: Array) -> Array:
@@ -179,15 +221,16 @@ def _turned(nets: Array) -> Array:
     return turned
 
 
-def _measured(gauge: Gauge, nets: Array, lines: Array) -> _Cells:
+def _measured(gauge: Gauge, nets: Array, lines: Array, about: Array | None = None) -> _Cells:
     corners = nets[:, [0, -1]][:, :, [0, -1]]
     points = corners.reshape(-1, 3)
-    theta = gauge.peaked(points)
+    near = None if about is None else np.repeat(about, 4)
+    theta = gauge.peaked(points, near)
     rows = _standing(gauge, points, theta)
     # one peak is proved later on; where none was found by climbing, it is sought
     lost = np.flatnonzero(~(np.abs(rows[1]) < LOST * gauge.radius))
     if len(lost):
-        theta[lost] = gauge.worst(points[lost]).theta
+        theta[lost] = gauge.worst(points[lost], None if near is None else near[lost]).theta
         rows[:, lost] = _standing(gauge, points[lost], theta[lost])
     theta, *rest = (row.reshape(corners.shape[:3]) for row in (theta, *rows))
     theta = theta[:, :1, :1] + np.remainder(theta - theta[:, :1, :1] + math.pi, TURN) - math.pi
@@ -209,12 +252,15 @@ def _standing(gauge: Gauge, points: Array, theta: Array) -> Array:
     return np.stack([v + depth, rate, held.away, held.gives, q, y, x, v])
 
 
-def look(gauge: Gauge, surfaces: Sequence[Smooth], tolerance: float, angles: int) -> SeenSmooth:
+def look(
+    gauge: Gauge, surfaces: Sequence[Smooth], tolerance: float, angles: int, crossed: Crossed | None = None
+) -> SeenSmooth:
     """Look at a surface from a roller; bounds are sharp to a share of the tolerance, mm, unless it is far off.
 
-    Raises UnsettledError where the flank is not proved regular, or bounds do not come close to what is reached.
+    A groove of several turns is `crossed`. Raises UnsettledError where the flank is not proved regular, or bounds do
+    not come close to what is reached.
     """
-    return _Look(gauge, tolerance).seen([cells_of(gauge, surface) for surface in surfaces], angles)
+    return _Look(gauge, tolerance).seen([cells_of(gauge, surface) for surface in _alike(surfaces)], angles, crossed)
 
 
 class _Look:
@@ -228,7 +274,7 @@ class _Look:
         self.lowest, self.edges = math.inf, _Held()
         self.shift = 0.0
 
-    def seen(self, cells: Sequence[_Cells], angles: int) -> SeenSmooth:
+    def seen(self, cells: Sequence[_Cells], angles: int, crossed: Crossed | None) -> SeenSmooth:
         """All that the cells show."""
         gauge = self.gauge
         corners = np.concatenate([np.hypot(each.nets[..., 0], each.nets[..., 1]).ravel() for each in cells])
@@ -242,23 +288,32 @@ class _Look:
         if not far:
             # between control points a surface may lie a little nearer to the axis
             demand_regular(gauge, (1.0 - NEARER) * float(corners.min()), float(corners.max()), self.shift)
+        carries = np.ones(BINS * gauge.lifts.turns, dtype=np.bool_)
+        if crossed is not None:
+            carries = crossed.carries(_radii(cells))
+        carried = carries[np.arange(angles) * len(carries) // angles]
         holds = _holds(gauge, cells, angles)
         for each in cells:
             self._settle(each, far=far)
-        at = int(np.nanargmin(holds)) if np.isfinite(holds).any() else 0
-        least = float(holds[at])
+            if crossed is not None:
+                self._pass_by(each, crossed.gauges, far=far)
+        wanted = np.where(carried, holds, np.nan)
+        at = int(np.nanargmin(wanted)) if np.isfinite(wanted).any() else 0
+        least, period = float(wanted[at]), gauge.lifts.period
         peaks = [
-            Peak(self.most[name], self.at[name] % TURN, max(self.bound[name] - self.most[name], 0.0))
+            Peak(self.most[name], self.at[name] % period, max(self.bound[name] - self.most[name], 0.0))
             for name in ("out", "proud", "bare")
         ]
-        bound = self.edges.least()
-        held = Peak(least, at * TURN / angles, max(least - bound, 0.0) if math.isfinite(least) else math.inf)
-        return SeenSmooth(peaks[0], holds, held, peaks[1], peaks[2])
+        bound = self.edges.least(carries)
+        held = Peak(least, at * period / angles, max(least - bound, 0.0) if math.isfinite(least) else math.inf)
+        return SeenSmooth(peaks[0], holds, carried, held, peaks[1], peaks[2])
 
     def _settle(self, cells: _Cells, *, far: bool) -> None:
         """Take in cells and their bounds; those that are far above what is reached are halved."""
         for parting in range(ROUNDS + 1):
-            bounds = _bounds(self.gauge, cells, self.shift)
+            # at the places of a cell a roller gives way by little more than at its corners
+            shift = np.minimum(SHIFT * (np.abs(cells.gives).max(axis=(1, 2)) + self.near), self.shift)
+            bounds = _bounds(self.gauge, cells, shift)
             reached = self._reached(cells)
             top, deep = cells.height.max(axis=(1, 2)) + bounds.height + bounds.gap, cells.distance
             out = np.where(reached, bounds.given(top)[1], -np.inf)
@@ -281,23 +336,71 @@ class _Look:
                 | (bare > max(self.most["bare"], 0.0) + self.near)
                 | (low < self.lowest - self.near)
             )
-            hopeless = bool((open_ & _hopeless(cells, bounds, (self.near, self.shift))).any())
+            hopeless = bool((open_ & _hopeless(cells, bounds, (self.near, shift))).any())
             last = far or parting == ROUNDS or np.count_nonzero(open_) > MOST or hopeless
             done = np.ones_like(open_) if last else ~open_
             for name, values in (("out", out), ("proud", proud), ("bare", bare)):
                 self.bound[name] = max(self.bound[name], float(values[done].max(initial=-math.inf)))
             self._hold(cells, bounds, done)
             if last and open_.any() and not far:
-                raise UnsettledError("bounds of the flank's surface do not come close to what is reached: give an STL")
+                steep = "this steep flank is not proved by its surface at this tolerance"
+                raise UnsettledError(f"{steep}: give a smaller one, or an STL")
             if done.all():
                 return
             cells = self._halved(cells.take(open_), bounds.skew[:, open_])
 
+    def _pass_by(self, cells: _Cells, gauges: Sequence[Gauge], *, far: bool) -> None:
+        """Take in how far cells stand in the way of the rollers of other turns, of all flanks together.
+
+        A place is within a roller's way if it is above the one flank and below the other one.
+        """
+        for turn in range(1, self.gauge.lifts.turns):
+            nets, lines, about = cells.nets, cells.lines, cells.theta[:, 0, 0] + TURN * turn
+            for parting in range(ROUNDS + 1):
+                near = _near(gauges, nets, about)
+                if not near.any():
+                    break
+                nets, lines, about = nets[near], lines[near], about[near]
+                inside, bound = np.zeros((len(nets), 2, 2)), np.full(len(nets), np.inf)
+                for gauge in gauges:
+                    seen = _measured(gauge, nets, lines, about)
+                    bounds = _bounds(gauge, seen, 0.0)
+                    inside = np.fmax(inside, -seen.distance)  # at any angle a place is as deep at least
+                    top = seen.height.max(axis=(1, 2)) + bounds.height + bounds.gap
+                    under = -seen.distance.min(axis=(1, 2)) + bounds.distance + bounds.under
+                    bound = np.fmin(bound, np.fmin(under, np.maximum(top, 0.0)))
+                k = int(np.argmax(inside))
+                if inside.ravel()[k] > max(self.most["proud"], 0.0):
+                    self.most["proud"], self.at["proud"] = float(inside.ravel()[k]), float(seen.theta.ravel()[k])
+                open_ = ~(bound <= max(self.most["proud"], 0.0) + self.near)
+                far = far or self.most["proud"] > FAR * self.tolerance
+                last = far or parting == ROUNDS or np.count_nonzero(open_) > MOST
+                if last and open_.any() and not far:
+                    raise UnsettledError("bounds of what stands in the way of another turn are not close: give an STL")
+                done = np.ones_like(open_) if last else ~open_
+                known = np.where(np.isfinite(bound), bound, inside.max(axis=(1, 2)))
+                self.bound["proud"] = max(self.bound["proud"], float(known[done].max(initial=-math.inf)))
+                if done.all():
+                    break
+                nets, lines = _quartered(nets[open_], lines[open_])
+                about = np.tile(about[open_], 4)
+
     def _hold(self, cells: _Cells, bounds: _Bounds, done: Mask) -> None:
         """Take in the edges of cells that are done."""
         least = np.stack([bounds.given(cells.height[:, :, k].min(axis=1) - bounds.height)[0] for k in (0, 1)], axis=1)
-        inside = (bounds.along[0] >= self.gauge.inner) & (bounds.along[1] <= self.gauge.outer)
-        self.edges.add(cells.take(done), np.where(inside[:, None], least, -np.inf)[done])
+        inside = np.stack([self._within(cells, k) for k in (0, 1)], axis=1)
+        self.edges.add(cells.take(done), np.where(inside, least, -np.inf)[done])
+
+    def _within(self, cells: _Cells, k: int) -> Mask:
+        """Whether the edges (n,) of cells at the beginning of t, or at its end, lie within the roller's length."""
+        theta, edge = cells.theta[:, :, k], cells.nets[:, :, -k]
+        middle, half = theta.mean(axis=1)[:, None], 0.5 * np.abs(np.diff(theta, axis=1))[:, 0]
+        c, s = np.cos(middle), np.sin(middle)
+        along, across = edge[..., 0] * c + edge[..., 1] * s, np.abs(edge[..., 1] * c - edge[..., 0] * s).max(axis=1)
+        low = along.min(axis=1) * np.cos(half) - across * np.sin(half)
+        high = along.max(axis=1) + across * np.sin(half)
+        within: Mask = (low >= self.gauge.inner) & (high <= self.gauge.outer)
+        return within
 
     def _reached(self, cells: _Cells) -> Mask:
         """Cells (n,) that the roller may reach with its length; what their corners show is taken in."""
@@ -320,21 +423,50 @@ class _Look:
 
     def _halved(self, cells: _Cells, skew: Array) -> _Cells:
         along = skew[0] >= skew[1]
-        parts, lines = [], []
-        first = halves(cells.nets[along])
-        second = [np.swapaxes(part, 1, 2) for part in halves(np.swapaxes(cells.nets[~along], 1, 2))]
-        own, other = cells.lines[along], cells.lines[~along]
-        middle = other.mean(axis=1)
-        for k in (0, 1):
-            parts += [first[k], second[k]]
-            lines += [own, np.stack([other[:, 0], middle] if k == 0 else [middle, other[:, 1]], axis=1)]
-        return _measured(self.gauge, np.ascontiguousarray(np.concatenate(parts)), np.concatenate(lines))
+        first = _along_halved(cells.nets[along], cells.lines[along])
+        second = _across_halved(cells.nets[~along], cells.lines[~along])
+        nets, lines = (np.concatenate(pair) for pair in zip(first, second, strict=True))
+        about = np.concatenate([np.tile(cells.theta[own, 0, 0], 2) for own in (along, ~along)])
+        return _measured(self.gauge, np.ascontiguousarray(nets), lines, about)
 
 
-def _hopeless(cells: _Cells, bounds: _Bounds, sizes: tuple[float, float]) -> Mask:
+def _along_halved(nets: Array, lines: Array) -> tuple[Array, Array]:
+    """Cells (2 n,) and their lines: first halves along s, then second ones."""
+    return np.concatenate(halves(nets)), np.tile(lines, (2, 1))
+
+
+def _across_halved(nets: Array, lines: Array) -> tuple[Array, Array]:
+    """Cells (2 n,) and their lines: first halves along t, then second ones."""
+    parts = [np.swapaxes(part, 1, 2) for part in halves(np.swapaxes(nets, 1, 2))]
+    (low, high), middle = lines.T, lines.mean(axis=1)
+    ends = np.concatenate([np.stack([low, middle], axis=1), np.stack([middle, high], axis=1)])
+    return np.concatenate(parts), ends
+
+
+def _quartered(nets: Array, lines: Array) -> tuple[Array, Array]:
+    """Cells (4 n,), halved along s and t, and their lines."""
+    nets, lines = _across_halved(*_along_halved(nets, lines))
+    return np.ascontiguousarray(nets), lines
+
+
+def _near(gauges: Sequence[Gauge], nets: Array, about: Array) -> Mask:
+    """Cells (n,) that are not surely below or above the way of a roller at angles (n,), rad, of its turn."""
+    points = nets.reshape(-1, 3)
+    phi = gauges[0].polar(points, np.repeat(about, len(points) // len(nets))).reshape(len(nets), -1)
+    low, high = phi.min(axis=1), phi.max(axis=1)
+    z = nets[..., 2].reshape(len(nets), -1)
+    beyond = np.zeros(len(nets), dtype=np.bool_)
+    for gauge in gauges:
+        highest = np.maximum(*(gauge.most(0.5 * (low + high), end) for end in (z.min(axis=1), z.max(axis=1))))
+        beyond |= highest <= 0.0
+    near: Mask = ~beyond | (high - low > 2.0 * BESIDE)
+    return near
+
+
+def _hopeless(cells: _Cells, bounds: _Bounds, sizes: tuple[float, Array]) -> Mask:
     """Cells (n,) so small that not they, but how far rollers are shifted, leaves F unknown.
 
-    `sizes` are what bounds have to be close to, and how far rollers are shifted, mm.
+    `sizes` are what bounds have to be close to, and how far rollers are shifted (n,), mm.
     """
     near, shift = sizes
     span = (cells.theta.max(axis=(1, 2)) - cells.theta.min(axis=(1, 2))) * bounds.along[1]
@@ -359,8 +491,8 @@ class _Places(NamedTuple):
         return _Places(*(Ball(ball.mid[which], ball.rad[which]) for ball in self))
 
 
-def _bounds(gauge: Gauge, cells: _Cells, shift: float) -> _Bounds:
-    """Bounds over cells, true of rollers that give way by no more than `shift`, mm."""
+def _bounds(gauge: Gauge, cells: _Cells, shift: Array | float) -> _Bounds:
+    """Bounds over cells, true of rollers that give way by no more than `shift`, mm, one for all cells or (n,)."""
     side, guide, base, growth = float(gauge.side), gauge.led, float(gauge.size(0.0)), gauge.spread
     middle = cells.theta.mean(axis=(1, 2))
     c, s = np.cos(middle)[:, None, None], np.sin(middle)[:, None, None]
@@ -395,7 +527,9 @@ def _bounds(gauge: Gauge, cells: _Cells, shift: float) -> _Bounds:
     (h1, k1, q1), (h2, k2, q2) = bent
     steep = np.abs(cells.rate).max(axis=(1, 2)) + apart[0] + apart[1]
     places = _Places(*(part.rows[0] for part in (q, across, along, v, size)))
-    beside, under, path = _gaps(gauge, cells, places, (low + middle, high + middle), (steep, shift))
+    beside, under, path = _gaps(
+        gauge, cells, places, (low + middle, high + middle), (steep, np.broadcast_to(shift, steep.shape))
+    )
     upright = 1.0 / math.hypot(1.0, growth)
     return _Bounds(
         0.125 * (h1 + h2),
@@ -426,7 +560,7 @@ def _jumping(gauge: Gauge, low: Array, high: Array) -> Mask:
         return found
     at, jumps = law.jumps(2)
     for angle in at[np.abs(jumps[2]) > JUMP * max(1.0, float(np.abs(jumps[2]).max()))].tolist():
-        found |= np.remainder(angle - low + LOOSE, TURN) <= high - low + 2.0 * LOOSE
+        found |= np.remainder(angle - low + LOOSE, gauge.lifts.period) <= high - low + 2.0 * LOOSE
     return found
 
 
@@ -454,12 +588,12 @@ def _slopes(gauge: Gauge, angle: BallJet, middle: Array) -> BallJet:
 
 
 def _gaps(
-    gauge: Gauge, cells: _Cells, places: _Places, angles: tuple[Array, Array], steepness: tuple[Array, float]
+    gauge: Gauge, cells: _Cells, places: _Places, angles: tuple[Array, Array], steepness: tuple[Array, Array]
 ) -> tuple[Array, Array, tuple[Array, Array]]:
     """How far F rises above H (n,), and the depth above -K (n,), mm, infinite where F is not known to fall; and m.
 
-    `places` are those over cells whose worst angles lie between `angles`; `steepness` are a bound of |F_theta|, mm per
-    rad, and how far rollers are shifted, mm.
+    `places` are those over cells whose worst angles lie between `angles`; `steepness` are bounds of |F_theta|, mm per
+    rad, and how far rollers are shifted, mm (n,).
     """
     steep, shift = steepness
     growth, smallest = gauge.spread, np.maximum(places.size.bounds()[0], 0.0)
@@ -476,15 +610,23 @@ def _gaps(
                 break
             near[lost] *= 0.25
             own = (angles[0][lost], angles[1][lost])
-            found = found.replaced(lost, _falls(gauge, places.take(lost), own, near[lost], shift))
+            found = found.replaced(lost, _falls(gauge, places.take(lost), own, near[lost], shift[lost]))
             peaked = found.peaks(steep, shift, near)
+        # the nearer the peak, the less all that follows is blurred by what F may be elsewhere
+        needed = np.where(peaked, AMPLE * (steep + shift * found.turns) / found.fall, near)
+        sharper = np.flatnonzero(needed < SHARPER * near)
+        if len(sharper):
+            near[sharper] = needed[sharper]
+            own = (angles[0][sharper], angles[1][sharper])
+            found = found.replaced(sharper, _falls(gauge, places.take(sharper), own, near[sharper], shift[sharper]))
+            peaked[sharper] = found.peaks(steep, shift, near)[sharper]
         fall, (least, most) = found.fall, found.path
         beside = np.where(peaked, steep**2 / (2.0 * fall), np.inf)
         # where F is above 0 the roller may stand nearer: within a window at whose ends F is below 0
         top = np.where(np.isfinite(beside), top + beside, 0.0)
         window = np.where(fall > 0.0, 2.0 * near + ROOM * np.sqrt(2.0 * top / np.maximum(fall, 1e-6)), near)
         window = np.minimum(window, MOST_WINDOW)
-        found = _falls(gauge, places, angles, window, 0.0)
+        found = _falls(gauge, places, angles, window, np.zeros_like(window))
         fall, nearing = found.fall, found.nearing
         within = np.isfinite(beside) & (fall > 0.0) & (top < 0.5 * fall * (window - near) ** 2) & (nearing > 0.0)
         rate = places.size.magnitude * steep + seen * found.slope
@@ -504,7 +646,7 @@ class _Falls(NamedTuple):
     turns: Array
     path: tuple[Array, Array]
 
-    def peaks(self, steep: Array, shift: float, window: Array) -> Mask:
+    def peaks(self, steep: Array, shift: Array, window: Array) -> Mask:
         """Whether F of all rollers has its peak within the window (n,), rad, about where its slope is `steep` (n,)."""
         peaked: Mask = (self.fall > 0.0) & (steep + shift * self.turns <= self.fall * window)
         return peaked
@@ -526,8 +668,8 @@ class _Falls(NamedTuple):
         )
 
 
-def _falls(gauge: Gauge, places: _Places, angles: tuple[Array, Array], window: Array, shift: float) -> _Falls:
-    """Bounds over angles wider by a window (n,), rad, and for rollers that are shifted by up to `shift`, mm.
+def _falls(gauge: Gauge, places: _Places, angles: tuple[Array, Array], window: Array, shift: Array) -> _Falls:
+    """Bounds over angles wider by a window (n,), rad, and for rollers that are shifted by up to `shift` (n,), mm.
 
     `places` are those over cells whose worst angles lie between `angles`.
     """
@@ -565,10 +707,10 @@ def demand_regular(gauge: Gauge, low: float, high: float, shift: float = 0.0) ->
     """
     side, guide, base, growth = float(gauge.side), gauge.led, float(gauge.size(0.0)), gauge.spread
     near = math.sqrt(max(low**2 - (gauge.reach + shift) ** 2, 0.0))
-    edges = np.linspace(near, high, DEPTHS + 1)
-    turn = np.linspace(0.0, TURN, LOOKS + 1)
+    edges, looks = np.linspace(near, high, DEPTHS + 1), LOOKS * gauge.lifts.turns
+    turn = np.linspace(0.0, gauge.lifts.period, looks + 1)
     a, b = np.tile(turn[:-1], DEPTHS), np.tile(turn[1:], DEPTHS)
-    c, d = np.repeat(edges[:-1], LOOKS), np.repeat(edges[1:], LOOKS)
+    c, d = np.repeat(edges[:-1], looks), np.repeat(edges[1:], looks)
     for _ in range(PARTINGS + 1):
         mid, rad = gauge.lifts.round.enclosure(a, b, 2)
         led = guide.jets(Ball(mid[0], rad[0] + shift / guide.lever), Ball(mid[1], rad[1]), Ball(mid[2], rad[2]))
@@ -614,11 +756,14 @@ class _Held:
             line = 2 * np.round(cells.lines[:, k] * 2**40).astype(np.int64) + k
             self.parts.append((line, cells.theta[:, 0, k], cells.theta[:, 1, k], least[:, k]))
 
-    def least(self) -> float:
-        """Height, mm, at which some line holds the roller at least, over all angles; -inf where none goes round."""
+    def least(self, carries: Mask) -> float:
+        """Height, mm, at which some line holds the roller at least in parts of the period (BINS a turn) that carry.
+
+        It is -inf where no line goes through one.
+        """
         line, first, last, least = (np.concatenate(part) for part in zip(*self.parts, strict=True))
         numbers, row = np.unique(line, return_inverse=True)
-        width = TURN / BINS
+        width, count_all = TURN / BINS, len(carries)
         low, high = np.minimum(first, last), np.maximum(first, last)
         sense = np.where(last >= first, 1.0, -1.0)
         begin = np.floor(low / width).astype(np.intp)
@@ -626,35 +771,42 @@ class _Held:
         own, step = runs_of(count)
         bins = begin[own] + step
         over = np.minimum(high[own], (bins + 1) * width) - np.maximum(low[own], bins * width)
-        places = row[own] * BINS + bins % BINS
-        held, covered = np.full(len(numbers) * BINS, np.inf), np.zeros(len(numbers) * BINS)
+        places = row[own] * count_all + bins % count_all
+        held, covered = np.full(len(numbers) * count_all, np.inf), np.zeros(len(numbers) * count_all)
         np.minimum.at(held, places, least[own])
         np.add.at(covered, places, sense[own] * over)
         whole = np.abs(covered) >= width - LOOSE
-        return float(np.where(whole, held, -np.inf).reshape(-1, BINS).max(axis=0).min())
+        best = np.where(whole, held, -np.inf).reshape(-1, count_all).max(axis=0)
+        return float(best[carries].min()) if carries.any() else -math.inf
 
 
 def _holds(gauge: Gauge, cells: Sequence[_Cells], angles: int) -> Array:
     """Height (angles,), mm, at which the surface holds the roller at equal steps, laid straight between corners."""
-    theta = np.arange(angles) * (TURN / angles)
+    width = gauge.lifts.period / angles
     best = np.full(angles, np.nan)
-    line, at, height, along = [], [], [], []
     for each in cells:
         corners = each.nets[:, [0, -1]][:, :, [0, -1]]
         reach = corners[..., 0] * np.cos(each.theta) + corners[..., 1] * np.sin(each.theta)
+        inside: Mask = np.logical_and.reduce((reach >= gauge.inner) & (reach <= gauge.outer), axis=1)
+        low, high = each.theta.min(axis=1), each.theta.max(axis=1)
         for k in (0, 1):
-            own = np.round(each.lines[:, k] * 2**40).astype(np.int64)
-            for j in (0, 1):
-                line.append(own)
-                at.append(each.theta[:, j, k] % TURN)
-                height.append(each.gives[:, j, k])
-                along.append(reach[:, j, k])
-    lines = np.concatenate(line)
-    places, heights, reaches = (np.asarray(np.concatenate(part), dtype=np.float64) for part in (at, height, along))
-    for number in np.unique(lines):
-        own = np.flatnonzero(lines == number)
-        order = own[np.argsort(places[own])]
-        within = (reaches[order] >= gauge.inner) & (reaches[order] <= gauge.outer)
-        values = np.where(within, heights[order], np.nan)
-        best = np.fmax(best, np.interp(theta, places[order], values, period=TURN))
+            begin = np.ceil((low[:, k] - LOOSE) / width).astype(np.intp)
+            count = np.floor((high[:, k] + LOOSE) / width).astype(np.intp) - begin + 1
+            own, step = runs_of(np.where(inside[:, k], np.maximum(count, 0), 0))
+            number = begin[own] + step
+            (first, last), (start, end) = (part[own, :, k].T for part in (each.theta, each.gives))
+            way = last - first
+            share = np.where(way == 0.0, 0.0, (number * width - first) / np.where(way == 0.0, 1.0, way))
+            values = start + np.clip(share, 0.0, 1.0) * (end - start)
+            order = np.argsort(np.where(np.isfinite(values), values, -np.inf))  # of several the highest stays
+            best[number[order] % angles] = np.fmax(best[number[order] % angles], values[order])
     return best
+
+
+def _radii(cells: Sequence[_Cells]) -> Array:
+    """Radii (m,), mm, of the lines t = const of cells."""
+    lines = np.concatenate([each.lines.ravel() for each in cells])
+    ends = np.concatenate([each.nets[:, 0, [0, -1], :2].reshape(-1, 2) for each in cells])
+    _, row = np.unique(np.round(lines * 2**40), return_inverse=True)
+    radii: Array = np.bincount(row, np.hypot(ends[:, 0], ends[:, 1])) / np.bincount(row)
+    return radii

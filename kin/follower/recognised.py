@@ -92,6 +92,44 @@ class Moved(Protocol):
         ...
 
 
+@dataclass(frozen=True, eq=False)
+class WholeTurn:
+    """A motion by its positions (n,), mm or rad, at equal steps of a turn, and their standard deviation `sd`.
+
+    What laws leave of it may have half as many independent values as there are positions.
+    """
+
+    position: Array
+    sd: float
+    span: float = TURN
+    closed: bool = True
+    zero_ends: bool = False
+
+    @property
+    def turn(self) -> Array:
+        """Positions (n,) over the turn."""
+        return self.position
+
+    @property
+    def shaft(self) -> Array:
+        """Shaft angles (n,), rad."""
+        return equal_steps(len(self.position))
+
+    @property
+    def last(self) -> float:
+        """Position at the end of the turn."""
+        return float(self.position[0])
+
+    @property
+    def spans(self) -> int:
+        """Most independent values of what laws leave."""
+        return len(self.position) // 2
+
+    def alike(self, most: int, /) -> tuple[int, ...]:
+        """All numbers of waves up to `most`."""
+        return tuple(range(1, most + 1))
+
+
 class Stroke(NamedTuple):
     """A stroke by a `law` between two boundaries and two levels of a programme.
 

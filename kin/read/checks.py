@@ -154,6 +154,7 @@ def unread_check(contents: Contents, error: ReadError) -> Check:
     else:
         name = "closed" if error.reason in NOT_CLOSED else "readable"
     remedy = "" if error.closing is None else f"; {_gap_remedy(error.closing)}"
+    remedy = "; move the cam in its file until its shaft is there" if error.cams else remedy
     return failed(name, f"{error.message}{remedy}")
 
 

@@ -29,8 +29,9 @@ class ReadError(CamgeoError, ValueError):
     place       (x, y) in mm (drawing units if the file states none), or None if the error has no place
     width       size of a gap, in the same unit, or None
     closing     gap, mm, within which all ends would find a partner; None where none closes it
-    unstated    whether the file states no unit, where ends of its contour do not meet
+    unstated    whether the file states no unit, where ends of its contour do not meet or none goes round the shaft
     between     ends (x, y), in the same unit, of the one stretch that is missing; None where there are more
+    cams        places "x,y", mm, of cams beside the shaft, where no contour goes round it; empty otherwise
     """
 
     def __init__(
@@ -49,6 +50,7 @@ class ReadError(CamgeoError, ValueError):
         self.width = width
         self.closing: float | None = None
         self.unstated = False
+        self.cams: tuple[str, ...] = ()
         self.between: tuple[tuple[float, float], tuple[float, float]] | None = None
 
     def closed_by(self, gap: float | None) -> ReadError:

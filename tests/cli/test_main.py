@@ -106,6 +106,32 @@ def test_undercut_exits_1_and_keeps_the_last_good_set(good: Path, tmp_path: Path
     assert (out / "good.rejected" / "report.json").is_file()
 
 
+@pytest.mark.parametrize("verbose", [[], ["-v"]])
+def test_a_failing_run_says_what_helps_and_where_its_files_are(
+    good: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str], verbose: list[str]
+) -> None:
+    """A face that is too narrow; as wide as the remedy says, it will do."""
+    out = tmp_path / "out"
+    good.write_text(
+        "cam: {kind: disc, base_radius: 20, follower: {kind: flat, width: 4},\n"
+        "  motion: [{rise: 6, over: 180, law: cycloidal}, {return: 6, over: 180, law: cycloidal}]}\n"
+        "export: {files: [csv]}\n",
+        encoding="utf-8",
+    )
+    assert main(["export", str(good), "--out", str(out), *verbose]) == 1
+    told = capsys.readouterr().out.splitlines()
+    (remedy,) = [line for line in told if line.startswith("  remedy for face-width: ")]
+    assert remedy.endswith(f" mm or more ({good}:1:66)")
+    assert f"  the files of this run are in {out / 'good'}.rejected; {out / 'good'} is left as it was" in told
+    assert told[-1 if verbose else 0].startswith("good: FAILED")
+    assert (out / "good.rejected" / "good.csv").is_file()
+    wide = re.search(r"width of ([0-9.]+) mm", remedy)
+    assert wide is not None
+    good.write_text(good.read_text(encoding="utf-8").replace("width: 4", f"width: {wide[1]}"), encoding="utf-8")
+    assert main(["export", str(good), "--out", str(out)]) == 0
+    assert "rejected" not in capsys.readouterr().out
+
+
 def test_two_recipes_of_one_name_are_an_error(good: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     other = tmp_path / "deeper" / "good.yaml"
     other.parent.mkdir()

@@ -1,4 +1,4 @@
-"""Linear and cylindrical cams as the page's worker answers for them: fields, curves, segments, solids, developments.
+"""Linear, cylindrical and indexing cams as the worker answers for them: fields, curves, segments, solids, paper.
 
 Holds: camgeo.api.shown.
 """
@@ -25,7 +25,7 @@ if TYPE_CHECKING:
 live = script("live")
 TEXTS = {
     path.stem: path.read_text("utf-8")
-    for kind in ("linear", "cylindrical")
+    for kind in ("linear", "cylindrical", "indexing")
     for path in sorted((RECIPES / kind).glob("*.yaml"))
 }
 UNITS = {"mm": 1.0, "inch": 25.4}
@@ -131,6 +131,7 @@ def test_the_solid_of_a_kind_is_closed(name: str) -> None:
     deep |= {"drum-shortened": 65.0, "drum-arm": 90.0, "drum-cone": 80.0}  # needs: cylindrical
     deep |= {"drum-screw": 88.0, "drum-spiral": 88.0}  # needs: cylindrical
     deep |= {"drum-milled": 70.0}  # needs: cylindrical, milling
+    deep |= {"index-barrel": 90.0, "index-globoid": 72.0}  # needs: indexing
     assert high[2] - low[2] == pytest.approx(deep[name], rel=0.2 if name.endswith("-end") else 1e-6)
 
 
@@ -218,10 +219,13 @@ def test_a_kind_in_another_unit_stays_the_same_cam(name: str) -> None:
         recipe = live._recipe(name, one)
         plain = {path: node.text for path, node in scalars(recipe.source().root)}
         stroke = next(value for path, value in plain.items() if re.fullmatch(r"cam\.motion.*\.rise", path))
-        sizes.append(float(stroke) * (1.0 if "arm:" in text else UNITS[recipe.units]))  # an arm swings
+        turns = "arm:" in text or "turret:" in text
+        sizes.append(float(stroke) * (1.0 if turns else UNITS[recipe.units]))  # of an arm, or a turret
     assert sizes[1] == pytest.approx(sizes[0], rel=1e-6)
-    sized = r"cam\.follower\.(radius|width)"  # a roller has a radius, a shoe a width
-    key, size = next((found[1], value) for path, value in plain.items() if (found := re.fullmatch(sized, path)))
+    sized = r"cam\.follower\.(radius|width)|cam\.turret\.(roller)"  # a roller has a radius, a shoe a width
+    key, size = next(
+        (found[1] or found[2], value) for path, value in plain.items() if (found := re.fullmatch(sized, path))
+    )
     wrong = re.sub(rf"\b{key}: {re.escape(size)}\b", f"{key}: {0.99 * float(size)}", new)
     assert not live._alike(live._recipe(name, text), live._recipe(name, wrong))
 
@@ -233,6 +237,42 @@ def test_a_swing_over_a_drum_is_drawn_in_degrees() -> None:
     assert answer["scene"]["plots"][0]["unit"] == "°"
     (rise, *_) = (one["change"] for one in answer["motion"]["segments"] if one["kind"] == "rise")
     assert rise == pytest.approx(20.0, abs=1e-6)
+
+
+# needs: indexing
+@pytest.mark.costly("cams with their turrets, and checks of them")
+@pytest.mark.parametrize("name", ["index-barrel", "index-globoid"])
+def test_a_turret_is_shown_over_a_turn(name: str) -> None:
+    """Its angle goes from half a pitch below the middle to half a pitch above it, and its segments stand upon it."""
+    stops, begin = {"index-barrel": (8, 0.0), "index-globoid": (10, 90.0)}[name]
+    answer = live.design(name, TEXTS[name])
+    assert (answer["faults"], answer["ok"]) == ([], True)
+    scene = answer["scene"]
+    angle = scene["plots"][0]
+    assert (angle["title"], angle["unit"]) == ("Turret", "°")
+    values = unpacked(angle["series"][0])
+    assert [values[0], values[round(2 * (begin + 90.0))], values[-1]] == pytest.approx(
+        [-180.0 / stops, 0.0, 180.0 / stops], abs=1e-3
+    )
+    assert scene["player"]["name"] == "playIndexer"
+    assert ('id="development"' in scene["panels"]) == (name == "index-barrel")
+    assert "rib-thickness" in scene["panels"]
+    picture = live.picture(name, TEXTS[name])
+    assert {key for key in picture if picture[key] != scene[key]} == set()
+    motion = answer["motion"]
+    assert (motion["total"], motion["closed"], motion["behind"]) == (360.0, False, "nothing")
+    assert motion["start"] == pytest.approx(-180.0 / stops)
+    (rise,) = (one for one in motion["segments"] if one["kind"] == "rise")
+    assert (rise["over"], rise["change"]) == (180, pytest.approx(360.0 / stops, abs=1e-6))
+
+
+# needs: indexing
+def test_a_barrel_comes_on_paper_unrolled_and_a_globoid_says_why_not() -> None:
+    page = Path(live.paper("index-barrel", TEXTS["index-barrel"])["files"][0]["path"]).read_bytes().decode("latin-1")
+    assert "unrolled at a radius of 50 mm" in page
+    given = {"name": "index-globoid", "text": TEXTS["index-globoid"]}
+    (fault,) = json.loads(live.answer("paper", json.dumps(given)))["faults"]
+    assert "a globoid has no development" in fault["text"]
 
 
 # needs: axis

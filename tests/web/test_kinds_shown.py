@@ -1,4 +1,4 @@
-"""Linear and cylindrical cams on the page in a browser: they move, are drawn by hand, compared, filmed and made."""
+"""Linear, cylindrical and indexing cams on the page in a browser: they move, are drawn, compared, filmed and made."""
 
 from __future__ import annotations
 
@@ -222,6 +222,92 @@ def test_a_film_of_a_drum_turns_it(desk: tab.Tab, tmp_path: Path) -> None:
     assert np.corrcoef(tops[:36], tops[36:])[0, 1] > 0.95  # twice a turn
 
 
+# needs: indexing
+@pytest.mark.parametrize(("name", "at", "step"), [("index-barrel", 60.0, 45.0), ("index-globoid", 150.0, 36.0)])
+def test_an_indexing_cam_advances_its_turret(desk: tab.Tab, name: str, at: float, step: float) -> None:
+    """Both are a third of their rise on, by a modified sine, from half a step below the middle."""
+    text = shipped(f"indexing/{name}")
+    desk.load("dial", text)
+    assert desk.text_of("verdict") == "every check of the design holds"
+    turn_to(desk, at)
+    rib = desk.ask("[...document.querySelectorAll('#drawing .indexer path')].at(-1).getAttribute('d')")
+    still = root_of(recipe := load_order_text(text, "dial.yaml")).shown(recipe).still(at)
+    (drawn,) = re.findall(r'd="([^"]+)"><title>rib</title>', still)
+    np.testing.assert_allclose(numbers(rib), numbers(drawn), atol=0.02)
+    share = (2.0 + math.pi / 3.0 - 2.25 * math.sin(7.0 * math.pi / 9.0)) / (4.0 + math.pi)
+    told = re.search(r"turret ([−\d.]+)°", desk.text_of("now"))
+    assert told is not None
+    assert float(told[1].replace("−", "-")) == pytest.approx(step * (share - 0.5), abs=0.01)
+    titles = desk.ask("[...document.querySelectorAll('.plot b')].map((one) => one.textContent)")
+    assert titles == ["Turret", "Velocity", "Acceleration", "Pressure angle", "Rollers engaged"]
+    engaged = desk.ask("[...document.querySelectorAll('.plot')].at(-1).querySelector('.value').textContent")
+    assert re.fullmatch(r"lower flank [123], upper flank [123]", engaged)
+    assert desk.ask("document.querySelector('#development') !== null") == (name == "index-barrel")
+    for width in (390, 1280):
+        desk.browser.size(width, 844)
+        assert desk.ask("document.documentElement.scrollWidth") <= width
+    assert desk.browser.problems == []
+
+
+# needs: indexing, cylindrical
+def test_a_cam_with_fewer_rollers_follows_another(desk: tab.Tab) -> None:
+    """Its picture is there before its development, which is still that of the other cam."""
+    for name in ("cylindrical/drum-rib", "cylindrical/drum-groove", "indexing/index-barrel", "indexing/index-globoid"):
+        desk.load("cam", shipped(name))
+        assert desk.text_of("verdict").startswith("every check of the design holds")
+    assert desk.ask("document.querySelector('#development') === null")
+    assert desk.browser.problems == []
+
+
+# needs: indexing
+def test_rollers_of_a_dial_run_along_its_development(desk: tab.Tab) -> None:
+    """At rest two of them stand 60 sin(22.5) = 22.96 mm off the middle, whose distance is the sum of their heights."""
+    desk.load("dial", shipped("indexing/index-barrel"))
+    scale = 364.0 / (100.0 * math.pi)
+    for at in (180.0, 270.0):
+        turn_to(desk, at)
+        told = desk.ask(
+            "[...document.querySelectorAll('#development .roller-at')].map((one) => one.getAttribute('transform'))"
+        )
+        places = np.array([re.findall(r"-?[\d.]+", one) for one in told], dtype=float)
+        offset = 30.0 * (1.0 + math.cos(math.pi / 8.0)) - 60.0 * math.cos(math.pi / 8.0)
+        for z in (45.0 - 60.0 * math.sin(math.pi / 8.0), 45.0 + 60.0 * math.sin(math.pi / 8.0)):
+            wanted = 46.0 + 364.0 * (at / 360.0 + math.asin(offset / 50.0) / math.tau), 8.0 + scale * (90.0 - z)
+            assert np.abs(places - wanted).max(axis=1).min() < 0.03
+
+
+# needs: indexing
+def test_an_indexing_cam_is_made_judged_compared_and_filmed(desk: tab.Tab, tmp_path: Path) -> None:
+    desk.browser.call("Page.setDownloadBehavior", behavior="allow", downloadPath=str(tmp_path))
+    text = shipped("indexing/index-globoid")
+    desk.load("globoid", text)
+    desk.judged("make")
+    assert "ok" in desk.text_of("outcome")
+    files = desk.ask("[...document.querySelectorAll('#files a')].map((one) => one.download)")
+    assert {"globoid.stl", "globoid.csv", "report.json"} <= {*files}
+    desk.click("solid")
+    desk.wait("!byId('solid-figure').hidden")
+    # 2 (100 - sqrt(60^2 - 36^2)) = 104 mm, where no track cuts the rim
+    assert re.match(r"[\d.]+ × 104 × 72 mm", desk.text_of("solid-size"))
+    desk.press("keep")
+    desk.wait("document.querySelector('#drawing .kept .metal') !== null")
+    desk.enter("part.length", "66")
+    tall = "document.querySelector('#drawing {} .metal').getBBox().height"
+    assert desk.ask(tall.format(".kept")) == pytest.approx(72.0, abs=0.01)
+    assert desk.ask(tall.format(".indexer")) == pytest.approx(66.0, abs=0.01)
+    before = desk.ask("document.querySelector('#drawing .kept .metal').getAttribute('d')")
+    turn_to(desk, 200.0)
+    assert desk.ask("document.querySelector('#drawing .kept .metal').getAttribute('d')") != before
+    desk.press("unkeep")
+    desk.click("gif")
+    wait((tmp_path / "globoid.gif").is_file)
+    film = Image.open(io.BytesIO((tmp_path / "globoid.gif").read_bytes()))
+    pictures = [np.asarray(one.convert("RGB")).astype(int) for one in ImageSequence.Iterator(film)]
+    moved = [int((np.abs(one - pictures[0]).sum(axis=2) > 30).sum()) for one in pictures]
+    assert max(moved) > 1000
+    assert desk.browser.problems == []
+
+
 def test_what_is_not_seen_or_shall_not_move_stands_still(desk: tab.Tab) -> None:
     desk.load("disc", shipped("disc-roller"))
     desk.click("play")
@@ -256,13 +342,14 @@ def test_a_kind_is_chosen_among_the_starters(desk: tab.Tab) -> None:
     names = desk.ask("[...document.querySelectorAll('.starters li')].map((one) => one.dataset.name)")
     assert {"linear", "linear-groove", "plate-feed"} <= {*names}  # needs: linear
     assert {"cylindrical", "cylindrical-end", "drum-rib"} <= {*names}  # needs: cylindrical
+    assert {"indexing-barrel", "indexing-globoid", "index-barrel"} <= {*names}  # needs: indexing
     loose = desk.ask("[...document.querySelectorAll('.starters img')].map((one) => one.getAttribute('src'))")
     assert len({*loose}) == len(loose)
 
 
 def test_every_shipped_kind_has_its_style_and_player_on_the_page(site: Path) -> None:
     code, style = ((site / name).read_text("utf-8") for name in ("page.js", "tab.css"))
-    for path in [*RECIPES.glob("linear/*.yaml"), *RECIPES.glob("cylindrical/*.yaml")]:
+    for path in (path for kind in ("linear", "cylindrical", "indexing") for path in RECIPES.glob(f"{kind}/*.yaml")):
         recipe = load_order_text(path.read_text("utf-8"), str(path))
         rules, player = root_of(recipe).shown(recipe).looks()
         assert rules in style

@@ -61,7 +61,7 @@ def test_it_loads_from_its_own_server_alone_and_without_complaint(page: tab.Tab)
 def test_starters_have_pictures_and_begin_a_recipe(page: tab.Tab) -> None:
     page.ask("byId('begin').open = true")
     page.wait("document.querySelectorAll('#shipped li').length > 0")
-    kinds = ("linear", "cylindrical")  # recipes of their own
+    kinds = ("linear", "cylindrical", "indexing")  # recipes of their own
     others = [name for name, each in STARTERS.items() if each.root in kinds]
     others += [path.name for kind in kinds for path in (RECIPES / kind).glob("*.yaml")]
     assert page.ask("document.querySelectorAll('.starters li').length") == len(TEXTS) + len(others)

@@ -13,6 +13,8 @@ from camgeo.cams.double_roller import DoubleRollerCam
 from camgeo.cams.flat_pair import FlatPairCam
 from camgeo.capabilities.cylindrical.exact import designed as drum_of
 from camgeo.capabilities.cylindrical.turning import scene as drum_scene
+from camgeo.capabilities.indexing.exact import designed as indexer_of
+from camgeo.capabilities.indexing.turning import scene as indexer_scene
 from camgeo.capabilities.linear.design import designed
 from camgeo.capabilities.linear.plate_page import scene
 from camgeo.common.clock import Clock
@@ -25,8 +27,8 @@ if TYPE_CHECKING:
     from camgeo.recipe.recipe import Recipe
 
 ROOT = Path(__file__).parents[2]
-LINEAR, DRUMS = "Linear cams", "Cylindrical cams"
-FAMILIES = ("Flat faces and yokes", "Linkages", "Double rollers", "Flat pairs", "Disc cams", LINEAR, DRUMS)
+LINEAR, DRUMS, INDEXERS = "Linear cams", "Cylindrical cams", "Indexing cams"
+FAMILIES = ("Flat faces and yokes", "Linkages", "Double rollers", "Flat pairs", "Disc cams", LINEAR, DRUMS, INDEXERS)
 DISC = ("disc", "constant-diameter")
 SHAFT_DEG = 60.0
 COLUMNS = 3
@@ -68,6 +70,7 @@ def main() -> None:
     for folder_name, heading, drawn in (
         ("linear", LINEAR, lambda plate: still(scene(designed(plate, Clock())), STEPS // 3, plate.name)),
         ("cylindrical", DRUMS, lambda drum: still(drum_scene(drum_of(drum, Clock()), turned), turned, drum.name)),
+        ("indexing", INDEXERS, lambda cam: still(indexer_scene(indexer_of(cam, Clock()), turned), turned, cam.name)),
     ):
         for path in sorted((ROOT / "recipes" / folder_name).glob("*.yaml")):
             order = load_order(path)
@@ -82,7 +85,7 @@ def main() -> None:
     for name, found_cells in cells.items():
         rows = [found_cells[i : i + COLUMNS] for i in range(0, len(found_cells), COLUMNS)]
         table = "\n".join("<tr>\n" + "\n".join(row) + "\n</tr>" for row in rows)
-        needs = {LINEAR: "linear", DRUMS: "cylindrical"}.get(name)
+        needs = {LINEAR: "linear", DRUMS: "cylindrical", INDEXERS: "indexing"}.get(name)
         mark = f"<!-- needs: {needs} -->\n" if needs else ""
         text.append(f"{mark}## {name}\n\n<table>\n{table}\n</table>\n")
     (ROOT / "docs" / "gallery.md").write_text("\n".join(text), encoding="utf-8")

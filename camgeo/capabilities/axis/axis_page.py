@@ -3,32 +3,46 @@
 from __future__ import annotations
 
 import math
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
 from camgeo.curve.ring import bar, box, disc
-from camgeo.measures.units import UNIT_NAMES
+from camgeo.measures.units import UNIT_NAMES, report_unit
 from camgeo.report.page import svg, tables
 from camgeo.report.page.page import filled, picture, plotted
 from camgeo.report.page.scene import STEPS, FilledShape, MovingBody, Scene, SceneInput, block, pivot, poses, still
 from camgeo.report.plot import Plot, Series
 from kin.numeric.angles import TURN
+from kin.read.drive_tables import SLAVES, read_drive
+from kin.read.errors import ReadError
 
 if TYPE_CHECKING:
+    from collections.abc import Sequence
+    from pathlib import Path
+
     from camgeo.capabilities.axis.design import AxisDesign
 
 RADIUS = 40.0  # of the drawn table, of any unit: an axis has no size of its own
 NAMES = ("Position", "Velocity", "Acceleration", "Jerk")
 POWERS = ("", "/s", "/s²", "/s³")
+BETWEEN = 16  # places to a step of the page at which the error of a table is looked at
 
 
-def page(design: AxisDesign, report: dict[str, Any]) -> str:
-    """Return the HTML of the page, from the motion and the report."""
+class JudgedTable(NamedTuple):
+    """A table for a drive that was judged: its path, its tolerance, mm or rad, and the unit, mm, of one without."""
+
+    path: Path
+    within: float
+    mm: float
+
+
+def page(design: AxisDesign, report: dict[str, Any], tables_judged: Sequence[JudgedTable] = ()) -> str:
+    """Return the HTML of the page, from the motion and the report, with the error of each of `tables_judged`."""
     data = {
         **picture(design.recipe, scene(design), np.linspace(0.0, TURN, STEPS + 1), 1),
         "marks": [],
-        "plots": [plotted(plot) for plot in _plots(design)],
+        "plots": [plotted(plot) for plot in (*_plots(design), *_errors(design, tables_judged))],
         "rests": [
             [math.degrees(rest.begin), math.degrees(rest.end - rest.begin), "dwell"] for rest in design.motion.rests
         ],
@@ -82,4 +96,30 @@ def _plots(design: AxisDesign) -> list[Plot]:
         limit = most.get(name.lower())
         limits = () if limit is None else ((limit, "limit"), (-limit, ""))
         plots.append(Plot(name, f"{unit}{per}", (Series(name.lower(), row),), limits=limits, dwells=True))
+    return plots
+
+
+def _errors(design: AxisDesign, judged: Sequence[JudgedTable]) -> list[Plot]:
+    """Error of the position that a controller makes of each table over a turn; none of a table that is not readable."""
+    factor, unit = report_unit(design.recipe, design.unit)
+    shown = "°" if design.recipe.swings else UNIT_NAMES[design.recipe.units]
+    count = STEPS * BETWEEN
+    angle = np.linspace(0.0, TURN, count + 1)
+    plots = []
+    for path, within, mm in judged:
+        try:
+            rows = read_drive(path, SLAVES["slave_deg"] if unit == "deg" else mm).rows
+        except ReadError:
+            continue  # the check `readable` says why
+        off = factor * (rows.rows(angle, 0)[0] - design.driven(within).rows(angle, 0)[0])
+        # beside each step the worst of what lies nearer to it than to another one
+        near = np.pad(off, BETWEEN // 2, mode="edge")[:-1].reshape(STEPS + 1, BETWEEN)
+        worst = np.take_along_axis(near, np.abs(near).argmax(axis=1)[:, None], axis=1)[:, 0]
+        limit = factor * within
+        series, limits = (Series("error", worst),), ((limit, "tolerance"), (-limit, ""))
+        plots.append(
+            Plot(
+                f"Error of {path.name}", shown, series, limits=limits, dwells=True, axis="error", holds=(limit, -limit)
+            )
+        )
     return plots

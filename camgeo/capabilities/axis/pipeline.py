@@ -92,21 +92,43 @@ def judged(
     that state none. Raises RecipeErrors where there is no such motion, CallError for a gap, or for a tolerance that is
     a length where the axis turns; OSError where a file cannot be read.
     """
+    run, _ = _judged(recipe, paths, tolerance, units, gap)
+    return run.report
+
+
+def judged_and_shown(
+    recipe: AxisRecipe, paths: list[Path], tolerance: float | None, units: float | None, gap: float | None
+) -> tuple[dict[str, Any], str]:
+    """Report of `judged`, and the HTML of the page with the error of each table; arguments and errors are the same."""
+    from camgeo.capabilities.axis.axis_page import JudgedTable, page
+
+    run, within = _judged(recipe, paths, tolerance, units, gap)
+    mm = recipe.mm if units is None else units
+    tables = [JudgedTable(path, most, mm) for path, most in zip(paths, within, strict=True)]
+    report = run.report
+    return report, page(run.design, report, tables)
+
+
+def _judged(
+    recipe: AxisRecipe, paths: list[Path], tolerance: float | None, units: float | None, gap: float | None
+) -> tuple[Run, list[float]]:
+    """The run of `judged`, and the tolerance of each file, mm or rad."""
     if gap is not None:
         raise CallError("a gap joins the ends of drawings: leave it out for tables")
     if tolerance is not None and recipe.swings:
         raise CallError("the axis turns: its tolerance is an angle, give it in the recipe as export.tolerance")
     clock = Clock()
     design = designed(recipe, clock)
-    files, checks = [], design.limit_checks()
+    files, checks, tolerances = [], design.limit_checks(), []
     for path in paths:
         request = recipe.request_of(path.name)
         within = tolerance or (request and request.tolerance) or recipe.export.tolerance
         with clock.stage("judge csv"):
             found = _table_checks(design, path, request, within, recipe.mm if units is None else units)
         checks += found
+        tolerances.append(within)
         files.append(FileResult(path, request or FileRequest("csv", "controller"), units=units))
-    return _run(design, files, checks, clock).report
+    return _run(design, files, checks, clock), tolerances
 
 
 def _table_checks(design: AxisDesign, path: Path, request: FileRequest | None, within: float, mm: float) -> list[Check]:

@@ -58,6 +58,14 @@ def _judge(
     return pipeline.judged(recipe, paths, tolerance, units, gap)
 
 
+def _show(
+    recipe: AxisRecipe, paths: list[Path], tolerance: float | None, units: float | None, gap: float | None
+) -> tuple[dict[str, Any], str]:
+    from camgeo.capabilities.axis import pipeline
+
+    return pipeline.judged_and_shown(recipe, paths, tolerance, units, gap)
+
+
 def _claimed(recipe: AxisRecipe, name: str, _call: FileCall) -> dict[str, Any]:
     problem = f"{name.replace('_', ' ')} judges files of disc cams"
     raise recipe.error("axis", problem, None, "give verify a table for a drive")
@@ -77,5 +85,12 @@ def _foresee(recipe: AxisRecipe) -> tuple[Foreseen, ...]:
 
 READING = Reading(table=_table, read=_read, noun="motion of an axis", instead="the recipe of a disc cam")
 ROOT = Root(
-    design=_design, export=_export, check=_check, judge=_judge, claimed=_claimed, explain=_explain, foresee=_foresee
+    design=_design,
+    export=_export,
+    check=_check,
+    judge=_judge,
+    claimed=_claimed,
+    show=_show,
+    explain=_explain,
+    foresee=_foresee,
 )

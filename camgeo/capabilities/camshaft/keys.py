@@ -38,6 +38,7 @@ if TYPE_CHECKING:
     from camgeo.recipe.export import Length
     from camgeo.recipe.recipe import Recipe
     from camgeo.registry.formats import Format
+    from camgeo.schema.errors import RecipeError
     from camgeo.schema.reader import Reader, Values
     from camgeo.schema.yaml_source import Source
 
@@ -273,7 +274,17 @@ def read_camshaft(source: Source, path: Path) -> CamshaftRecipe:
     Raises RecipeErrors with all faults of the camshaft's own fields, else of the first lobe's recipe that has any, and
     for lobes or journals that overlap or reach beyond the shaft.
     """
-    return finish(*begin(source, "camshaft", SHAFT, swings=False), path, _check, _built)
+    reader, values = begin(source, "camshaft", SHAFT, swings=False)
+    reader.errors = [_whole(error) for error in reader.errors]
+    return finish(reader, values, path, _check, _built)
+
+
+def _whole(error: RecipeError) -> RecipeError:
+    """The fault of a key `parts`, which solids of a camshaft do not need, said so; any other fault as it is."""
+    if error.problem != "unknown key" or error.path.rpartition(".")[2] != "parts":
+        return error
+    problem = "each solid of a camshaft has shaft, journals and all lobes in one body"
+    return replace(error, problem=problem, remedy="leave parts out, as in files: [stl, step]")
 
 
 def _check(values: Values, reader: Reader) -> None:

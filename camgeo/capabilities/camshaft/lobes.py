@@ -14,6 +14,7 @@ from camgeo.capabilities.camshaft.keys import ROUNDING, of_a_lobe
 from camgeo.curve.measures import nearest
 from camgeo.measures.limits import limit_checks
 from camgeo.measures.lobe import moved_by
+from camgeo.measures.rule_remark import RuleRemark
 from camgeo.part.part import THINNEST
 from camgeo.schema.errors import RecipeErrors
 from camgeo.synthesis.design import designed
@@ -255,19 +256,12 @@ def foresee(recipe: CamshaftRecipe) -> tuple[Foreseen, ...]:
 
     Raises IntentError for a lobe whose intended motion no cam can have.
     """
-    from camgeo.checks.declared import CHECKS, CONTOUR, LIMIT, MOTION, THICKNESS, WATERTIGHT
-    from camgeo.recipe.figures import FIGURES
-    from camgeo.synthesis.expected_checks import Foreseen, foreseen
+    from camgeo.checks.declared import CONTOUR, MOTION, THICKNESS, WATERTIGHT
+    from camgeo.synthesis.expected_checks import Foreseen
 
     expected: dict[Foreseen, None] = {}
     for lobe in recipe.lobes:
-        made = replace(lobe.made, export=replace(lobe.made.export, files=()))
-        for foreseen_check in foreseen(made):
-            # only limits on the exact cam's figures and the core's checks: no train or other capability runs for a lobe
-            # `limited` is the figure that a limit bounds, False for any other check
-            limited = foreseen_check.name.startswith(LIMIT) and FIGURES[foreseen_check.name.removeprefix(LIMIT)]
-            if limited.of == "design" if limited else not CHECKS.owner(foreseen_check.name):
-                expected[foreseen_check] = None
+        expected |= dict.fromkeys(check for check in _own_checks(lobe) if _judged_on_shaft(check.name))
     expected[Foreseen("shaft")] = None
     shaft, *journals = recipe.bars
     # where the shaft is longer than its lobes together, some of it is bare, and is judged as a journal is
@@ -280,6 +274,38 @@ def foresee(recipe: CamshaftRecipe) -> tuple[Foreseen, ...]:
             (name,) = recipe.filenames(request)
             expected |= dict.fromkeys(Foreseen(check, name) for check in of_solid)
     return tuple(expected)
+
+
+def _own_checks(lobe: Lobe) -> tuple[Foreseen, ...]:
+    """Checks that a run of the lobe's own recipe makes without files; IntentError for a motion that no cam can have."""
+    from camgeo.synthesis.expected_checks import foreseen
+
+    return foreseen(replace(lobe.made, export=replace(lobe.made.export, files=())))
+
+
+def _judged_on_shaft(name: str) -> bool:
+    """Whether a check of a lobe's recipe is made on the shaft: of the core, or a limit on a figure of the exact cam.
+
+    No train and no other capability runs for a lobe.
+    """
+    from camgeo.checks.declared import CHECKS, LIMIT
+    from camgeo.recipe.figures import FIGURES
+
+    if name.startswith(LIMIT):
+        return FIGURES[name.removeprefix(LIMIT)].of == "design"
+    return not CHECKS.owner(name)
+
+
+def left_to_lobes(recipe: CamshaftRecipe) -> list[RuleRemark]:
+    """Remarks on checks of the lobes' recipes that no run of the shaft makes, one for each recipe that has some."""
+    left: dict[str, list[str]] = {}
+    for lobe in recipe.lobes:
+        if names := [check.name for check in _own_checks(lobe) if not _judged_on_shaft(check.name)]:
+            left[lobe.made.path.name] = names
+    return [
+        RuleRemark("lobe-checks", None, None, "", f"{', '.join(names)} of {file} is judged by its own export alone")
+        for file, names in left.items()
+    ]
 
 
 def _outside_shaft(recipe: CamshaftRecipe, lobe: PlacedLobe) -> list[Check]:

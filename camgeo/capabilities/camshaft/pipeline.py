@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING, Any
 
 from camgeo.capabilities.camshaft.extension import ON_SHAFT, writers
 from camgeo.capabilities.camshaft.keys import DRAWN, SHAFT_FILES
-from camgeo.capabilities.camshaft.lobes import lobe_checks, placed
+from camgeo.capabilities.camshaft.lobes import left_to_lobes, lobe_checks, placed
 from camgeo.common.clock import Clock
 from camgeo.common.units import INCH, UNIT_MM
 from camgeo.files.errors import MissingExtraError, RegionError
@@ -318,7 +318,15 @@ def _findings(
         for kind, record in SHAFT_FILES.items()
         if record.solid and record.contour and kind not in kinds
     )
-    return Findings(tuple(checks), tuple(files), tuple(clock.stages), skipped, "of each lobe", contours=contours)
+    return Findings(
+        tuple(checks),
+        tuple(files),
+        tuple(clock.stages),
+        skipped,
+        "of each lobe",
+        remarks=tuple(left_to_lobes(recipe)),
+        contours=contours,
+    )
 
 
 def _report(recipe: CamshaftRecipe, findings: Findings, lobes: tuple[PlacedLobe, ...]) -> dict[str, Any]:

@@ -21,6 +21,9 @@ and with the derivatives a_1 by theta and a_2 by rho of the contact's angle, whi
 those of q, and rho_theta = -q q_1/(rho + q q_2) and rho_r = r/(rho + q q_2) on a cylinder, from which rho follows as a
 series. All needs S and five derivatives, as balls over cells. Breaks of any derivative are nodes; where S'' jumps,
 p_theta does, and one spline ends and another begins.
+
+A spline may end at lines that lean. Then its parameter is s, theta(s, r) is linear in s, and the derivatives are those
+of p(theta(s, r), r): along r they are by d/dr + theta_r d/dtheta, and need a sixth of S. The frame turns by theta_r.
 """
 
 from __future__ import annotations
@@ -32,7 +35,8 @@ from typing import TYPE_CHECKING, Generic, NamedTuple, TypeVar
 import numpy as np
 
 from camgeo.capabilities.cylindrical.bends import places_along
-from camgeo.capabilities.cylindrical.grid import SAME, breaks_of
+from camgeo.capabilities.cylindrical.flank import Pose
+from camgeo.capabilities.cylindrical.grid import SAME, breaks_of, parts_between
 from camgeo.common.rounding import upward
 from camgeo.fit.nodes import ToleranceError, check_precision, rounding
 from kin.numeric.angles import TURN
@@ -40,15 +44,18 @@ from kin.numeric.elementary import cos, sin, sqrt
 from kin.numeric.interval import Ball
 from kin.numeric.jet import BallJet, Jet
 from kin.numeric.records import dataclass
+from kin.numeric.taylor import compose_balls
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
     from camgeo.capabilities.cylindrical.flank import Flank
+    from kin.law.piecewise import Side
     from kin.numeric.arrays import Array
 
 Number = TypeVar("Number", Jet, BallJet)
 
+FOURTH = 4  # order of the derivatives that bound cubic interpolation
 HERMITE = 384.0  # of the error of cubic Hermite interpolation
 LOOKS, BLOCKS = 360, 4  # parts of a turn and of the depth, over each of which derivatives are bounded
 MOST_ROWS, MOST_NODES = 64, 10_000  # of one flank: beyond, a tolerance is refused
@@ -69,6 +76,51 @@ class Bicubic:
     control: Array
 
 
+class Border(NamedTuple):
+    """A line over radii r (m + 1,) at which a spline begins or ends, as the parameter s, rad, has it.
+
+    Its shaft angles are s and `lean`, (2, m + 1), more: rad, and their slopes, rad/mm, cubic between the radii.
+    """
+
+    s: float
+    lean: Array
+
+    @staticmethod
+    def upright(s: float, count: int) -> Border:
+        """A line at one shaft angle."""
+        return Border(s, np.zeros((2, count)))
+
+
+class Span(NamedTuple):
+    """What lies between two borders, with the shaft angle linear in s between them."""
+
+    first: Border
+    last: Border
+
+    @property
+    def upright(self) -> bool:
+        """Whether the shaft angle is s."""
+        return not (self.first.lean.any() or self.last.lean.any())
+
+    @property
+    def rates(self) -> Array:
+        """Derivatives (2, m + 1) of the shaft angle by s, and those of them by r, 1/mm."""
+        rates: Array = (self.last.lean - self.first.lean) / (self.last.s - self.first.s)
+        rates[0] += 1.0
+        return rates
+
+    def at(self, s: Array) -> tuple[Array, Array]:
+        """Shaft angles (n, m + 1), rad, and their slopes, rad/mm, along lines s = const (n,)."""
+        share = ((s - self.first.s) / (self.last.s - self.first.s))[:, None]
+        theta, slope = (a * (1.0 - share) + b * share for a, b in zip(self.first.lean, self.last.lean, strict=True))
+        return s[:, None] + theta, slope
+
+    def border(self, s: float) -> Border:
+        """The line at an s within."""
+        theta, slope = self.at(np.array([s]))
+        return Border(s, np.stack([theta[0] - s, slope[0]]))
+
+
 class _Bounds(NamedTuple):
     """Bounds over parts of the turn (n,): |p_1111|, mm per rad^4, |p_2222|, per mm^3, |p_12222|, per rad and mm^3."""
 
@@ -76,7 +128,7 @@ class _Bounds(NamedTuple):
     across: Array
     mixed: Array
 
-    def off(self, h1: Array, h2: float) -> Array:
+    def off(self, h1: Array, h2: Array | float) -> Array:
         """Bound of the distance, mm (n,), between nodes h1 rad (n,) and h2 mm apart."""
         off: Array = (h1**4 * self.along + h2**4 * (self.across + 0.25 * h1 * self.mixed)) / HERMITE
         return off
@@ -108,15 +160,7 @@ def bicubics(
     knots = np.append(_behind(start, np.concatenate([joints, breaks])), start + TURN)
     look = _distinct(np.concatenate([np.linspace(start, start + TURN, LOOKS + 1), knots]))
     look[[0, -1]] = start, start + TURN
-    bounds = _bounds(flank, look, (low, high))
-    rows = _rows(bounds, np.diff(look), high - low, tolerance - lost)
-    if rows is None:
-        least = tolerance
-        while _rows(bounds, np.diff(look), high - low, least) is None:
-            least *= 1.5
-        problem = f"a flank within {tolerance:.3g} mm would take too many control points"
-        raise ToleranceError(f"{problem}; give at least {upward(least + lost, 3)} mm", least + lost)
-    count, step = rows
+    bounds, (count, step) = _rows_of(flank, look, ends, (tolerance, lost))
     theta = _columns(knots, look, step)
     r = np.linspace(low, high, count + 1)
     while True:  # between places of unlike steps nodes may be too far apart
@@ -126,7 +170,10 @@ def bicubics(
             break
         theta = np.sort(np.concatenate([theta, 0.5 * (theta[:-1] + theta[1:])[wide]]))
     first = np.searchsorted(theta, joints - SAME)
-    parts = [_spline(flank, theta[a : b + 1], r) for a, b in pairwise(first)]
+    parts = []
+    for a, b in pairwise(first):
+        span = Span(*(Border.upright(float(theta[k]), len(r)) for k in (a, b)))
+        parts.append(spline(flank, theta[a : b + 1], r, span))
     return parts, float(off.max())
 
 
@@ -239,33 +286,97 @@ def _rate(flank: Flank, axis: _Axis[Number], rho: Number) -> list[Number]:
     return [rates.rho - q, rho + rates.q1 + rates.q2 * rates.rho, rates.h1 + rates.h2 * rates.rho]
 
 
-def _bounds(flank: Flank, look: Array, ends: tuple[float, float]) -> _Bounds:
-    """Bounds between neighbours of angles (n + 1,), rad, and radii `ends`, mm."""
-    n, edges = len(look) - 1, np.linspace(*ends, BLOCKS + 1)
-    low, high = np.tile(look[:-1], BLOCKS), np.tile(look[1:], BLOCKS)
-    inner, outer = np.repeat(edges[:-1], n), np.repeat(edges[1:], n)
-    y, z = flank.guide.path(flank.law.on(BallJet.variable(low, high, 5)))
+class Way(NamedTuple):
+    """Lines s = const over cells (n,): their shaft angles and the derivatives of these by s, as series by the radius.
+
+    `low` and `high` are the least and the greatest shaft angle, rad; `straight` where it is the same all along a line.
+    """
+
+    low: Array
+    high: Array
+    theta: BallJet
+    rate: BallJet
+    straight: bool
+
+    @staticmethod
+    def upright(low: Array, high: Array) -> Way:
+        """Lines on which the shaft angle is the same all along, and is s."""
+        theta = BallJet.variable(low, high, FOURTH).constant(Ball.between(low, high))
+        return Way(low, high, theta, theta.constant(1.0), straight=True)
+
+
+class Derived(NamedTuple):
+    """Derivatives of the place over cells, in a frame that turns with e_r, as balls of its three parts by order.
+
+    By s or, times the fourth power of dtheta/ds, by theta (`along`), by the radius along a line s = const (`across`),
+    and of the derivative by s likewise (`mixed`).
+    """
+
+    along: list[list[Ball]]
+    across: list[list[Ball]]
+    mixed: list[list[Ball]]
+    rate: Array
+
+    def bounds(self) -> _Bounds:
+        """Bounds of the fourth derivatives."""
+        along, across, mixed = (size_of(part[FOURTH]) for part in self[:3])
+        return _Bounds(along * self.rate**4, across, mixed)
+
+
+def derived(flank: Flank, way: Way, r: tuple[Array, Array]) -> Derived:
+    """Derivatives over cells (n,) along lines s = const, between radii r[0] and r[1], mm, (n,) each."""
+    lift = flank.law.on(BallJet.variable(way.low, way.high, FOURTH + (1 if way.straight else 2)))
+    y, z = flank.guide.path(lift)
     y1, z1 = y.derivative(), z.derivative()
     axis = _Axis(y, y1, y1.derivative(), z, z1, z1.derivative())
     rows = [part.rows[0] for part in axis]
-    start = places_along(flank, rows[:3], rows[3:], Ball.between(inner, outer))
+    start = places_along(flank, rows[:3], rows[3:], Ball.between(*r))
     here = BallJet(start.mid[None], start.rad[None])
 
     # by theta: the frame itself turns
     rho = here
-    for order in range(4):
+    for order in range(FOURTH):
         rho = _rates(flank, _axis_to(axis, order), rho).rho.integral(start)
-    tau = BallJet.variable(low, high, 4) - 0.5 * (low + high)
-    x, q, h = _place(flank, _axis_to(axis, 4), rho)
-    c, s = cos(tau), sin(tau)
-    along = _size([x * c - q * s, x * s + q * c, h])
+    even = rho.constant(1.0)
+    along = _turning(_place(flank, _axis_to(axis, FOURTH), rho), even)
 
-    rho, r = here, BallJet.variable(inner, outer, 4)
-    still = _Axis(*(r.constant(row) for row in rows))
-    for order in range(4):
-        rho = (_to(r, order) / _rates(flank, _axis_to(still, order), rho).out).integral(start)
-    found = [along, _size(_place(flank, still, rho)), _size(_rate(flank, still, rho))]
-    folded = [part.reshape(BLOCKS, n).max(axis=0) for part in found]
+    # by r, where the shaft angle is that of the line
+    rho, radius, slope = here, BallJet.variable(*r, FOURTH), way.theta.derivative()
+    led = _Axis(*(_led(part, way) for part in axis))
+    for order in range(FOURTH):
+        rates = _rates(flank, _axis_to(led, order), rho)
+        rise = _to(radius, order) / rates.out
+        rho = (rise if way.straight else rise + rates.rho * _to(slope, order)).integral(start)
+    across = _turning(_place(flank, led, rho), slope)
+    mixed = _turning([part * way.rate for part in _rate(flank, led, rho)], slope)
+    return Derived(along, across, mixed, way.rate.rows[0].magnitude)
+
+
+def _led(part: BallJet, way: Way) -> BallJet:
+    """A series by theta as one by the radius, along lines s = const."""
+    if way.straight:
+        return way.theta.constant(part.rows[0])
+    return BallJet.of(compose_balls(_to(part, FOURTH).rows, way.theta.rows))
+
+
+def _turning(parts: Sequence[BallJet], slope: BallJet) -> list[list[Ball]]:
+    """Derivatives of a place by order, from its parts as series in a frame that turns by an angle of a slope."""
+    x, q, h = parts
+    found = [[part.rows[0] for part in parts]]
+    while x.order:
+        turn = _to(slope, x.order - 1)
+        across, along = _to(q, x.order - 1) * turn, _to(x, x.order - 1) * turn
+        x, q, h = x.derivative() - across, q.derivative() + along, h.derivative()
+        found.append([part.rows[0] for part in (x, q, h)])
+    return found
+
+
+def _bounds(flank: Flank, look: Array, ends: tuple[float, float]) -> _Bounds:
+    """Bounds between neighbours of angles (n + 1,), rad, and radii `ends`, mm."""
+    n, edges = len(look) - 1, np.linspace(*ends, BLOCKS + 1)
+    way = Way.upright(np.tile(look[:-1], BLOCKS), np.tile(look[1:], BLOCKS))
+    found = derived(flank, way, (np.repeat(edges[:-1], n), np.repeat(edges[1:], n)))
+    folded = [part.reshape(BLOCKS, n).max(axis=0) for part in found.bounds()]
     for part in folded:
         if not bool(np.isfinite(part).all()):
             where = math.degrees(float(look[int(np.argmax(~np.isfinite(part)))])) % 360.0
@@ -274,9 +385,34 @@ def _bounds(flank: Flank, look: Array, ends: tuple[float, float]) -> _Bounds:
     return _Bounds(*folded)
 
 
-def _size(parts: Sequence[BallJet]) -> Array:
-    """Bound of the fourth derivative's length (n,)."""
-    return np.asarray(24.0 * np.sqrt(sum(part.rows[4].magnitude ** 2 for part in parts)))
+def size_of(parts: Sequence[Ball]) -> Array:
+    """Bound of a derivative's length (n,)."""
+    return np.asarray(np.sqrt(sum(part.magnitude**2 for part in parts)))
+
+
+def rows_for(flank: Flank, ends: tuple[float, float], tolerance: float, lost: float) -> int:
+    """Number of rows between radii `ends`, mm, that needs the fewest control points within a tolerance, mm.
+
+    `lost`, mm, of it is rounding. Raises as `bicubics` does.
+    """
+    look = _distinct(parts_between(breaks_of(flank), LOOKS))
+    return _rows_of(flank, look, ends, (tolerance, lost))[1][0]
+
+
+def _rows_of(
+    flank: Flank, look: Array, ends: tuple[float, float], within: tuple[float, float]
+) -> tuple[_Bounds, tuple[int, Array]]:
+    """Bounds between neighbours of angles, rad, and what `_rows` finds by them within a tolerance and its rounding."""
+    tolerance, lost = within
+    bounds, wide, depth = _bounds(flank, look, ends), np.diff(look), ends[1] - ends[0]
+    rows = _rows(bounds, wide, depth, tolerance - lost)
+    if rows is None:
+        least = tolerance
+        while _rows(bounds, wide, depth, least) is None:
+            least *= 1.5
+        problem = f"a flank within {tolerance:.3g} mm would take too many control points"
+        raise ToleranceError(f"{problem}; give at least {upward(least + lost, 3)} mm", least + lost)
+    return bounds, rows
 
 
 def _rows(bounds: _Bounds, wide: Array, depth: float, tolerance: float) -> tuple[int, Array] | None:
@@ -313,33 +449,50 @@ def _over(look: Array, bounds: _Bounds, theta: Array) -> _Bounds:
     return _Bounds(*(np.array([part[a:b].max() for a, b in zip(first, last, strict=True)]) for part in bounds))
 
 
-def _spline(flank: Flank, theta: Array, r: Array) -> Bicubic:
-    """Spline through nodes theta (n + 1,), rad, between which S'' is continuous, and r (m + 1,), mm."""
-    rows = flank.law.derivatives(theta, 2, 1)
-    rows[:, -1] = flank.law.derivatives(theta[-1:], 2, -1)[:, 0]
-    pose = flank.led(np.repeat(rows, len(r), axis=1))
-    turn, radius = np.repeat(theta, len(r)), np.tile(r, len(theta))
-    start = flank.reached(pose, radius)
-    still = _Axis(*(Jet(np.stack([row, 0.0 * row])) for row in pose[:6]))
-    out = _rates(flank, _axis_to(still, 0), Jet(start[None])).out
-    rho = Jet(np.stack([start, radius / out.c[0]]))
-    both = _place(flank, still, rho), _rate(flank, still, rho)
-    (p, by_r), (by_theta, by_both) = ([_turned(parts, turn, k) for k in (0, 1)] for parts in both)
-    shape = len(theta), len(r), 3
-    nodes = [part.reshape(shape) for part in (p, by_r, by_theta, by_both)]
-    a, b = _beside(theta)[:, None, None], _beside(r)[None, :, None]
-    own, own_r, own_theta, own_both = (np.repeat(np.repeat(node, 2, axis=0), 2, axis=1) for node in nodes)
-    return Bicubic(theta, r, own + a * own_theta + b * own_r + a * b * own_both)
+def spline(flank: Flank, s: Array, r: Array, span: Span) -> Bicubic:
+    """Spline through nodes s (n + 1,), rad, of a span, between which S'' is continuous, and r (m + 1,), mm."""
+    theta, slope = (rows.ravel() for rows in span.at(s))
+    radius, inner = np.tile(r, len(s)), theta.size - len(r)
+    parts = [slice(None, inner), slice(inner, None)]  # a break at the last line counts from before it
+    sides: tuple[Side, Side] = (1, -1)
+    found = [local(flank, (theta[k], slope[k]), radius[k], side) for k, side in zip(parts, sides, strict=True)]
+    p, by_r, by_theta, by_both = (np.concatenate(pair).reshape(len(s), len(r), 3) for pair in zip(*found, strict=True))
+    rate, more = span.rates[:, None, :, None]
+    by_s, by_both = by_theta * rate, by_both * rate + by_theta * more
+    a, b = _beside(s)[:, None, None], _beside(r)[None, :, None]
+    nodes = [np.repeat(np.repeat(node, 2, axis=0), 2, axis=1) for node in (p, by_r, by_s, by_both)]
+    own, own_r, own_s, own_both = nodes
+    return Bicubic(s, r, own + a * own_s + b * own_r + a * b * own_both)
+
+
+def local(flank: Flank, line: tuple[Array, Array], r: Array, side: Side = 1) -> tuple[Array, Array, Array, Array]:
+    """Places (n, 3) on cylinders r (n,), their derivatives along lines by r, those by theta, and of these along lines.
+
+    A line is at a shaft angle, rad, and has a slope, rad/mm (n,) each; a break counts from one side.
+    """
+    theta, slope = line
+    y, z = flank.guide.path(flank.law.on(Jet.variable(theta, 3 if slope.any() else 2), side))
+    y1, z1 = y.derivative(), z.derivative()
+    axis = _Axis(*(_first(part, slope) for part in (y, y1, y1.derivative(), z, z1, z1.derivative())))
+    rows = [part.c[0] for part in axis]
+    start = flank.reached(Pose(rows[0], rows[1], rows[2], rows[3], rows[4], rows[5], np.zeros_like(theta)), r)
+    rates = _rates(flank, _axis_to(axis, 0), Jet(start[None]))
+    rho = Jet(np.stack([start, r / rates.out.c[0] + rates.rho.c[0] * slope]))
+    turn = Jet(np.stack([theta, slope]))
+    c, s = cos(turn), sin(turn)
+    found = []
+    for x, q, h in (_place(flank, axis, rho), _rate(flank, axis, rho)):
+        found += [x * c - q * s, x * s + q * c, h]
+    by = np.array([part.c for part in found]).reshape(2, 3, 2, -1).transpose(0, 2, 3, 1)
+    return by[0, 0], by[0, 1], by[1, 0], by[1, 1]
+
+
+def _first(part: Jet, slope: Array) -> Jet:
+    """A series by theta as one of first order by r, along lines of a slope (n,)."""
+    return Jet(np.stack([part.c[0], part.c[1] * slope if part.order else np.zeros_like(slope)]))
 
 
 def _beside(nodes: Array) -> Array:
     """How far control points (2 n,) lie beside their nodes (n,): by a third of the way to the next, or on it."""
     third = np.diff(nodes) / 3.0
     return np.stack([-np.append(0.0, third), np.append(third, 0.0)], axis=1).ravel()
-
-
-def _turned(parts: Sequence[Jet], theta: Array, row: int) -> Array:
-    """Coefficients (n, 3) of a row in the frame of the drum."""
-    x, y, z = (part.c[row] for part in parts)
-    c, s = np.cos(theta), np.sin(theta)
-    return np.column_stack([x * c - y * s, x * s + y * c, z])

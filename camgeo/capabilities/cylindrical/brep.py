@@ -14,6 +14,8 @@ import numpy as np
 
 from camgeo.capabilities.cylindrical.bicubic import NEAR, bicubics, jumps_of
 from camgeo.capabilities.cylindrical.figures import at_angle
+from camgeo.capabilities.cylindrical.sides import Sides, widest_gap
+from camgeo.capabilities.cylindrical.trimmed import trimmed
 from camgeo.files.brep import Shape, Stack
 from camgeo.files.curves import CONFUSION
 from camgeo.files.errors import RegionError
@@ -53,6 +55,13 @@ class _Line(NamedTuple):
         return self.vertices[first], [self.edges[n] for n in numbers], self.vertices[last]
 
 
+class _Rib(NamedTuple):
+    """An edge from floor to blank, with the vertices at its ends."""
+
+    edge: Shape
+    ends: tuple[Shape, Shape]
+
+
 class _Drum:
     """Faces of a drum under construction."""
 
@@ -82,41 +91,96 @@ class _Drum:
         recipe = self.design.recipe
         parts, off = bicubics(self.design.flanks[name], (recipe.floor, recipe.radius), self.tolerance, parted)
         self.off = max(self.off, off)
-        self.pieces += sum((len(part.theta) - 1) * (len(part.r) - 1) for part in parts)
-        nets = [part.control * [1.0, self.sign, 1.0] for part in parts]
-        feet, heads = ([_vertex(net[0, row]) for net in nets] for row in (0, -1))
-        ribs = [
-            _spline_edge(net[0], part.r, (foot, head))
-            for net, part, foot, head in zip(nets, parts, feet, heads, strict=True)
+        ribs = [self.rib(part, 0) for part in parts]
+        rows = self.strip(parts, [*ribs, ribs[0]])
+        places = [
+            int(np.argmin([abs(math.remainder(part.theta[0] - angle, TURN)) for part in parts])) for angle in parted
         ]
-        rows: list[list[Shape]] = [[], []]
-        for k, (net, part) in enumerate(zip(nets, parts, strict=True)):
-            after = (k + 1) % len(nets)
-            for edges, row, ends in zip(rows, (0, -1), (feet, heads), strict=True):
-                edges.append(_spline_edge(net[:, row], part.theta, (ends[k], ends[after])))
+        foot, head = (_Line(edges, [rib.ends[k] for rib in ribs], places) for k, edges in enumerate(rows))
+        return head, foot
+
+    def rib(self, part: Bicubic, column: int) -> _Rib:
+        """The line at which a spline begins, 0, or ends, -1, from its foot on the floor to its head on the blank."""
+        net = part.control[column] * [1.0, self.sign, 1.0]
+        ends = _vertex(net[0]), _vertex(net[-1])
+        return _Rib(_spline_edge(net, part.r, ends), ends)
+
+    def strip(self, parts: Sequence[Bicubic], ribs: Sequence[_Rib]) -> tuple[list[Shape], list[Shape]]:
+        """Add the faces of splines between ribs that follow one another; their edges on the floor and on the blank."""
+        rows: tuple[list[Shape], list[Shape]] = ([], [])
+        for part, begin, end in zip(parts, ribs[:-1], ribs[1:], strict=True):
+            self.pieces += (len(part.theta) - 1) * (len(part.r) - 1)
+            net = part.control * [1.0, self.sign, 1.0]
+            for k, row in enumerate((0, -1)):
+                rows[k].append(_spline_edge(net[:, row], part.theta, (begin.ends[k], end.ends[k])))
             surface = _surface(net, part)
             u, v = part.theta[[0, -1]].tolist(), part.r[[0, -1]].tolist()
             lay = (
-                (rows[0][k], (0.0, v[0])),
-                (ribs[after], (u[1], 0.0)),
-                (rows[1][k], (0.0, v[1])),
-                (ribs[k], (u[0], 0.0)),
+                (rows[0][-1], (0.0, v[0])),
+                (end.edge, (u[1], 0.0)),
+                (rows[1][-1], (0.0, v[1])),
+                (begin.edge, (u[0], 0.0)),
             )
             for n, (edge, at) in enumerate(lay):
                 _lay(edge, surface, at, along_u=n % 2 == 0)
             self.stack.face(surface, [edge for edge, _ in lay])
-        places = [
-            int(np.argmin([abs(math.remainder(part.theta[0] - angle, TURN)) for part in parts])) for angle in parted
-        ]
-        foot, head = (_Line(edges, ends, places) for edges, ends in zip(rows, (feet, heads), strict=True))
-        return head, foot
+        return rows
+
+    def crossed(self) -> tuple[_Line, _Line]:
+        """Add the flanks of a groove that crosses itself, with blank and floor; the lines of both end faces."""
+        design = self.design
+        cuts: dict[float, float] = {}
+
+        def parted(radius: float, phi: Array) -> list[float]:
+            cuts[radius] = widest_gap(phi)
+            return [cuts[radius], cuts[radius] + 0.5 * TURN]
+
+        made = trimmed(design, self.tolerance, parted)
+        self.off = made.off
+        floor, blank = (Sides(radius, cuts[radius]) for radius in (design.recipe.floor, design.recipe.radius))
+        corners: dict[int, _Rib] = {}
+        for stretch in made.stretches:
+            parts = stretch.parts
+            for corner, part, column in ((stretch.begin, parts[0], 0), (stretch.end, parts[-1], -1)):
+                if id(corner) not in corners:
+                    corners[id(corner)] = self.rib(part, column)
+            within = [self.rib(part, 0) for part in parts[1:]]
+            ribs = [corners[id(stretch.begin)], *within, corners[id(stretch.end)]]
+            below = stretch.name == "lower"  # the metal
+            for side, k, edges in zip((floor, blank), (0, -1), self.strip(parts, ribs), strict=True):
+                for n, (edge, part) in enumerate(zip(edges, parts, strict=True)):
+                    forward = below != (side is blank)
+                    side.add(edge, (ribs[n].ends[k], ribs[n + 1].ends[k]), part.control[:, k], forward=forward)
+        lines, half = [], 0.5 * TURN
+        for z, forward in ((0.0, True), (design.recipe.height, False)):
+            line = self.circle(blank.radius, z, [blank.cut, blank.cut + half])
+            for k, edge in enumerate(line.edges):
+                angle = blank.cut + half * (k + np.linspace(0.0, 1.0, HALVES + 1))
+                x, y = blank.radius * np.cos(angle), blank.radius * np.sin(angle)
+                places = np.column_stack([x, y, np.full_like(angle, z)])
+                blank.add(edge, (line.vertices[k], line.vertices[1 - k]), places, forward=forward)
+            lines.append(line)
+        for side in (floor, blank):
+            for middle, outer, holes in side.faces():
+                loops = [outer, *holes]
+                if self.sign < 0.0:
+                    loops = [[edge.Reversed() for edge in loop[::-1]] for loop in loops]
+                self.stack.face(self.round(side.radius, self.sign * middle), loops[0], loops[1:])
+        return lines[0], lines[1]
+
+    def round(self, radius: float, middle: float) -> Shape:
+        """The cylinder about the axis whose seam lies opposite a polar angle, rad."""
+        from OCP.Geom import Geom_CylindricalSurface
+        from OCP.gp import gp_Ax3, gp_Dir
+
+        seam = middle + 0.5 * TURN
+        axes = gp_Ax3(_point([0.0, 0.0, 0.0]), gp_Dir(0.0, 0.0, 1.0), gp_Dir(math.cos(seam), math.sin(seam), 0.0))
+        return Geom_CylindricalSurface(axes, radius)
 
     def cylinder(self, radius: float, first: _Line, second: _Line) -> None:
         """Add the faces between two lines on a cylinder about the axis, which are parted at the same polar angles."""
         from OCP.BRep import BRep_Tool
         from OCP.BRepBuilderAPI import BRepBuilderAPI_MakeEdge
-        from OCP.Geom import Geom_CylindricalSurface
-        from OCP.gp import gp_Ax3, gp_Dir
 
         ribs = [
             BRepBuilderAPI_MakeEdge(first.vertices[a], second.vertices[b]).Edge()
@@ -127,11 +191,8 @@ class _Drum:
             x, y = ([getattr(BRep_Tool.Pnt_s(vertex), axis)() for vertex in (start, end)] for axis in "XY")
             angle = math.atan2(y[0], x[0])
             sweep = (self.sign * (math.atan2(y[1], x[1]) - angle)) % TURN
-            # the surface's seam lies opposite the middle of the face
-            seam = angle + self.sign * 0.5 * sweep + math.pi
-            axes = gp_Ax3(_point([0.0, 0.0, 0.0]), gp_Dir(0.0, 0.0, 1.0), gp_Dir(math.cos(seam), math.sin(seam), 0.0))
             round_ = [*edges, ribs[(k + 1) % HALVES], *second.half(k)[1][::-1], ribs[k]]
-            self.stack.face(Geom_CylindricalSurface(axes, radius), round_)
+            self.stack.face(self.round(radius, angle + self.sign * 0.5 * sweep), round_)
 
     def lid(self, z: float, line: _Line, bore: Shape | None) -> None:
         """Add an end face within a line, outside the bore."""
@@ -156,6 +217,11 @@ def drum_solid(design: DrumDesign, tolerance: float) -> Solid:
         outline = design.bore.outline if drum.sign > 0.0 else design.bore.outline.mirrored()
         foot, head = drum.stack.wall(outline, 0.0, top)
         bore = [foot.wire, head.wire]
+    if recipe.turns > 1:
+        low, high = drum.crossed()
+        drum.lid(0.0, low, bore[0])
+        drum.lid(top, high, bore[1])
+        return Solid(drum.stack.solid(), drum.off, drum.pieces)
     # between two flanks one cylinder joins them
     parted = _parted(design, radii[rising[0]][1] if len(rising) > 1 else recipe.radius)
     lines = {name: drum.flank(name, parted[name]) for name in design.flanks}

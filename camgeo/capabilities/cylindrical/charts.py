@@ -16,6 +16,7 @@ from camgeo.capabilities.cylindrical.shells import PLACES, height, runs, shell
 from camgeo.capabilities.cylindrical.turning import LINES, outline, rollers
 from camgeo.measures.units import UNIT_NAMES
 from camgeo.recipe.figures import PRESSURE_ANGLE
+from camgeo.report.page.chart import FIELD, FOOT, LEFT, TOP, axes, chart, clip, field, path
 from kin.numeric.angles import TURN
 
 if TYPE_CHECKING:
@@ -25,8 +26,6 @@ if TYPE_CHECKING:
     from camgeo.capabilities.cylindrical.flank import Flank
     from kin.numeric.arrays import Array, Mask
 
-WIDTH, LEFT, RIGHT, TOP, FOOT = 420.0, 46.0, 10.0, 8.0, 30.0  # px of a chart, and of its margins
-FIELD = WIDTH - LEFT - RIGHT
 HIGH = 150.0  # px of the map's field
 BEYOND = 0.3  # rad, by which the path of an axis beside a radius is drawn beyond the turn
 ROUND = 48  # chords of a roller's section
@@ -57,16 +56,16 @@ def development(design: DrumDesign) -> str:
     for low, high in shell(design, blank).bands:
         bottom, top = np.column_stack([x, y(low)]), np.column_stack([x, y(high)])
         there = runs(np.isfinite(bottom[:, 1] + top[:, 1]))
-        parts += [f'<path class="metal" d="{_path(np.concatenate([bottom[k], top[k][::-1]]))}Z"/>' for k in there]
+        parts += [f'<path class="metal" d="{path(np.concatenate([bottom[k], top[k][::-1]]))}Z"/>' for k in there]
     for radius, look in ((blank, "line"), (inner, "line inner")):
         lines = [line for name in design.flanks for line in _flanks(design, name, radius)]
-        parts += [f'<path class="{look}" d="{_path(np.column_stack([x, TOP + tall - scale * z]))}"/>' for z in lines]
+        parts += [f'<path class="{look}" d="{path(np.column_stack([x, TOP + tall - scale * z]))}"/>' for z in lines]
     more = 0.0 if recipe.guide.radial else BEYOND  # beside a radius a path begins elsewhere than the turn
     turns = recipe.turns
     theta = np.linspace(-more, recipe.period + more, LINES * turns + 1)
     short = lost_from(design, theta) > inner
     sections = "".join(
-        f'<path class="section{look}" d="{_path(_section(design, radius))}Z"/>'
+        f'<path class="section{look}" d="{path(_section(design, radius))}Z"/>'
         for radius, look in ((blank, ""), (inner, " inner"))
     )
     shown = ""
@@ -80,8 +79,8 @@ def development(design: DrumDesign) -> str:
         if turns > 1:  # every turn from the chart's own edge on
             points[:, 0] = LEFT + FIELD * np.mod(share, 1.0)
             pieces = np.split(points, np.flatnonzero(np.abs(np.diff(points[:, 0])) > 0.5 * FIELD) + 1)
-        parts += [f'<path class="line pitch" d="{_path(piece)}"/>' for piece in pieces if len(piece) > 1]
-        parts += [f'<path class="line lost" d="{_path(points[run])}"/>' for run in runs(short) if run.size > 1]
+        parts += [f'<path class="line pitch" d="{path(piece)}"/>' for piece in pieces if len(piece) > 1]
+        parts += [f'<path class="line lost" d="{path(points[run])}"/>' for run in runs(short) if run.size > 1]
         shown += "".join(
             f'<g class="roller-at" transform="translate({x + FIELD * (k - 1):.2f} {y:.2f})">{sections}</g>'
             for k in range(3)
@@ -90,13 +89,11 @@ def development(design: DrumDesign) -> str:
         f'<circle class="crossing" cx="{LEFT + FIELD * place:.2f}" cy="{TOP + tall - scale * up:.2f}" r="4"/>'
         for place, up in crossed(design)
     ]
-    clip = f'<clipPath id="flat"><rect x="{LEFT}" y="{TOP}" width="{FIELD}" height="{tall:.1f}"/></clipPath>'
-    field = f'<rect class="field" x="{LEFT}" y="{TOP}" width="{FIELD}" height="{tall:.1f}"/>'
     over = f" with the tracks of all {turns}" if turns > 1 else ""
     told = f"the drum unrolled over one turn{over}: {', '.join(design.flanks)} flank and the path of the roller's axis"
-    axes = _axes(design, tall, (0.0, recipe.height), "angle on the drum, °", "z")
-    body = f'{clip}{field}<g clip-path="url(#flat)">{"".join(parts)}{shown}</g>{axes}'
-    return _chart("development", tall, told, body)
+    frame = axes(tall, _lengths(design, 0.0, recipe.height), "angle on the drum, °", f"z, {UNIT_NAMES[recipe.units]}")
+    body = f'{clip("flat", tall)}{field(tall)}<g clip-path="url(#flat)">{"".join(parts)}{shown}</g>{frame}'
+    return chart("development", tall, told, body)
 
 
 def _flanks(design: DrumDesign, name: str, radius: float) -> list[Array]:
@@ -206,7 +203,6 @@ def pressure_map(design: DrumDesign) -> str:
                 )
     if found.short.any():
         parts.append(f'<path class="cell none" d="{_cells(found.short)}"><title>undercut</title></path>')
-    field = f'<rect class="field" x="{LEFT}" y="{TOP}" width="{FIELD}" height="{HIGH}"/>'
     roller = recipe.roller
     whole = 360.0 * recipe.turns
     x = LEFT + FIELD * at / whole
@@ -218,11 +214,14 @@ def pressure_map(design: DrumDesign) -> str:
         f'<text class="told" x="{x + shift:.1f}" y="{y - 7.0:.1f}" text-anchor="{side}">{most:.2f}°</text>'
     )
     cursor = f'<g class="cursor" transform="translate({LEFT} 0)"><line y1="{TOP}" y2="{TOP + HIGH}"/></g>'
-    axes = _axes(design, HIGH, (roller.inner, roller.outer), "shaft angle, °", "radius", whole=whole)
+    ends = _lengths(design, roller.inner, roller.outer)
+    frame = axes(HIGH, ends, "shaft angle, °", f"radius, {UNIT_NAMES[recipe.units]}", whole=whole)
     told = (
         f"pressure angle over shaft angle and radius, at most {most:.2f} degrees at a shaft angle of {at:.1f} degrees"
     )
-    return _chart("map", HIGH, told, field + "".join(parts) + axes + cursor + mark, _scale(count, step), more=26.0)
+    return chart(
+        "map", HIGH, told, field(HIGH) + "".join(parts) + frame + cursor + mark, _scale(count, step), more=26.0
+    )
 
 
 def opacity(k: int, count: int) -> float:
@@ -265,33 +264,10 @@ def _cells(cells: Mask) -> str:
 # --- of both ----------------------------------------------------------------------------------------------------------
 
 
-def _path(points: Array) -> str:
-    return "M" + "L".join(f"{x:.1f} {y:.1f}" for x, y in points.tolist())
-
-
-def _axes(
-    design: DrumDesign, tall: float, ends: tuple[float, float], along: str, upright: str, *, whole: float = 360.0
-) -> str:
-    """Degrees along a chart, and lengths between two ends, mm, up it."""
-    low, high = ends
-    mm, unit = design.recipe.mm, UNIT_NAMES[design.recipe.units]
-    foot = TOP + tall
-    parts = []
-    for k in range(5):
-        x = LEFT + FIELD * k / 4.0
-        parts.append(f'<line class="grid" x1="{x}" y1="{foot:.1f}" x2="{x}" y2="{foot + 4.0:.1f}"/>')
-        parts.append(f'<text x="{x}" y="{foot + 14.0:.1f}" text-anchor="middle">{0.25 * whole * k:g}</text>')
-    for value, y in ((low, foot), (high, TOP)):
-        parts.append(f'<line class="grid" x1="{LEFT - 4.0}" y1="{y:.1f}" x2="{LEFT}" y2="{y:.1f}"/>')
-        parts.append(f'<text x="{LEFT - 6.0}" y="{y + 3.5:.1f}" text-anchor="end">{value / mm:.4g}</text>')
-    parts.append(f'<text x="{LEFT + 0.5 * FIELD}" y="{foot + 26.0:.1f}" text-anchor="middle">{along}</text>')
-    turned = f'transform="translate(9 {TOP + 0.5 * tall:.1f}) rotate(-90)"'
-    return "".join([*parts, f'<text {turned} text-anchor="middle">{upright}, {unit}</text>'])
-
-
-def _chart(name: str, tall: float, told: str, *parts: str, more: float = 0.0) -> str:
-    box = f"0 0 {WIDTH:g} {TOP + tall + FOOT + more:.1f}"
-    return f'<svg id="{name}" class="chart" role="img" aria-label="{told}" viewBox="{box}">{"".join(parts)}</svg>'
+def _lengths(design: DrumDesign, *ends: float) -> tuple[float, float]:
+    """Both ends of an upright axis, mm, in the recipe's unit."""
+    low, high = (end / design.recipe.mm for end in ends)
+    return low, high
 
 
 def legend(design: DrumDesign) -> Sequence[str]:

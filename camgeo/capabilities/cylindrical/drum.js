@@ -6,7 +6,6 @@ function playDrum(data, kept = null) {
   if (kept) for (const path of drum.querySelectorAll("path:not(.metal)")) path.remove();
   const paths = [...drum.querySelectorAll("path")];
   const arcs = [...document.querySelectorAll("#drawing .contacts path")];
-  const developed = document.querySelectorAll("#development .roller-at");
   const cursor = document.querySelector("#map .cursor");
   const TURN = 2 * Math.PI;
 
@@ -39,6 +38,8 @@ function playDrum(data, kept = null) {
   const over = (rows) => Object.fromEntries(Object.entries(rows).map(([name, row]) => [name, along(row, data.parts)]));
   const lines = data.lines.map(over);
   const rollers = data.rollers.map(over);
+  // none beyond those that it has: a picture comes before its development, beside that of another cam
+  const developed = [...document.querySelectorAll("#development .roller-at")].slice(0, 3 * rollers.length);
 
   // outlines of the bands of a shell between two angles to the right of the viewer
   function seen(shell, turn, low, high, chords) {

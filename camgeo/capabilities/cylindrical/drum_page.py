@@ -10,9 +10,6 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from camgeo.capabilities.cylindrical.charts import (
-    FIELD,
-    LEFT,
-    TOP,
     development,
     flat_axis,
     flat_scale,
@@ -25,6 +22,8 @@ from camgeo.capabilities.cylindrical.shells import FACE, PLACES, RIM, shells
 from camgeo.capabilities.cylindrical.turning import LINES, rollers, scene, slope, touched
 from camgeo.measures.units import UNIT_NAMES
 from camgeo.report.page import tables
+from camgeo.report.page.asset import asset
+from camgeo.report.page.chart import FIELD, LEFT, TOP
 from camgeo.report.page.page import pack_numbers, picture, plotted
 from camgeo.report.page.scene import STEPS
 from camgeo.report.plot import Plot, Series
@@ -38,7 +37,7 @@ if TYPE_CHECKING:
 
 def looks() -> tuple[str, str]:
     """Return the rules of the charts, and the player that turns the drum."""
-    return _asset("drum.css"), _asset("drum.js")
+    return asset("chart.css") + _asset("drum.css"), _asset("drum.js")
 
 
 def panels(design: DrumDesign, report: dict[str, Any]) -> str:

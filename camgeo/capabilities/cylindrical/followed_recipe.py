@@ -27,6 +27,10 @@ class Drawn(FollowedDrum):
         """Text of a recipe of a drum with this motion: its programme, or lifts that are in the file `table`."""
         return _recipe_of(self, table)
 
+    def told_recipe(self, table: str) -> tuple[str, list[str]]:
+        """Text of `recipe`; the summary tells what it has."""
+        return self.recipe(table), []
+
     def page(self) -> str:
         """The page of the recipe, with the verdict on the file.
 

@@ -15,9 +15,9 @@ from camgeo.measures.extension import Results
 from camgeo.measures.units import UNIT_NAMES, in_units
 from camgeo.schema.quantity import read_quantity
 from camgeo.schema.scalars import Complaint
-from kin.cylindrical.figures import exact_play
 from kin.cylindrical.inspected import read_flank_points
 from kin.cylindrical.measured_flanks import MOTION, PROFILE, UNKNOWNS, UnlikeError, made_drum
+from kin.cylindrical.play import exact_play
 from kin.numeric.angles import TURN, degrees
 from kin.numeric.check import Check, at_most, failed
 from kin.numeric.errors import UnsettledError

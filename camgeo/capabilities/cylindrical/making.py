@@ -36,13 +36,9 @@ def foresee(design: DrumDesign, request: FileRequest) -> None:
     if request.kind == "step":
         from camgeo.files.brep import need_kernel
 
-        recipe, problem = design.recipe, ""
-        if recipe.turns > 1:
-            problem = "STEP of a groove of several turns, which crosses itself, is not made yet"
-        elif any(design.tips.values()):
+        if any(design.tips.values()):
             problem = "a flank that an undercut shortens ends in a sharp edge, and no STEP is made of it"
-        if problem:
-            raise recipe.error(recipe.field_of(request), problem, None, "give stl, 3mf or ply")
+            raise design.recipe.error(design.recipe.field_of(request), problem, None, "give stl, 3mf or ply")
         need_kernel()
     if request.format.program:
         _demand_judged(design, request)

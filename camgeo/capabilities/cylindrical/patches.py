@@ -10,7 +10,7 @@ corners lie in it. A break of the acceleration has to be a column, so that none 
 from __future__ import annotations
 
 import math
-from typing import TYPE_CHECKING, NamedTuple
+from typing import TYPE_CHECKING, NamedTuple, TypeAlias
 
 import numpy as np
 
@@ -30,6 +30,9 @@ if TYPE_CHECKING:
     from camgeo.capabilities.cylindrical.flank import Flank
     from camgeo.capabilities.cylindrical.grid import Grid
     from kin.numeric.arrays import Array
+
+At: TypeAlias = "tuple[Corner, int]"
+"""A corner, and which of its flanks is meant."""
 
 GUARD = 0.5  # of a column, least width of a cell beside a line
 ROUNDS, MORE_ROWS = 7, 1.5  # of finer rows, and how many times as many there are in each
@@ -116,11 +119,8 @@ def _cut(
     made, most = [], 0.0
     for name, grid in grids.items():
         flank = design.flanks[name]
-        for begin, end in _neighbours(lost_of(design.crossings, name), flank.period):
-            first, last = _line(begin, rows, flank.period), _line(end, rows, flank.period)
-            last = last + flank.period * np.round((first[-1] - last[-1]) / flank.period + 0.5)
-            if last[-1] < first[-1]:
-                last = last + flank.period
+        for begin, end in kept_of(design.crossings, name, flank.period):
+            first, last = lines_of((begin, end), rows, flank.period)
             for finer in FINER:
                 theta = _columns(grid, flank, (first, last), finer)
                 off = _cells_off(flank, theta, rows)
@@ -133,22 +133,25 @@ def _cut(
     return tuple(made), most
 
 
-def _neighbours(lost: Sequence[Lost], period: float) -> list[tuple[tuple[Corner, int], tuple[Corner, int]]]:
-    """Corners at which a flank's patches begin and end, each with which of its flanks it is."""
-    ordered = sorted(lost, key=lambda each: _angle(each.begin) % period)
+def kept_of(crossings: list[Crossing], name: str, period: float) -> list[tuple[At, At]]:
+    """Corners between which a flank, `lower` or `upper`, is kept, each with which of its flanks it is, in order."""
+    ordered = sorted(lost_of(crossings, name), key=lambda each: _angle(each.begin) % period)
     return [(each.end, ordered[(i + 1) % len(ordered)].begin) for i, each in enumerate(ordered)]
 
 
-def _angle(at: tuple[Corner, int]) -> float:
+def _angle(at: At) -> float:
     corner, k = at
     return float((corner.first, corner.second)[k][0])
 
 
-def _line(at: tuple[Corner, int], rows: Array, period: float) -> Array:
-    """Shaft angles, rad, of a corner's line on a flank on the rows, the outermost of them in the first period."""
-    corner, k = at
-    theta = corner.at(rows)[k]
-    return np.asarray(theta - period * math.floor(theta[-1] / period))
+def lines_of(ends: tuple[At, At], rows: Array, period: float) -> tuple[Array, Array]:
+    """Shaft angles, rad, of two corners' lines on a flank on rows (n,), the outermost of the first in the first period.
+
+    The second line is the next one behind the first.
+    """
+    first, last = (corner.at(rows)[k] for corner, k in ends)
+    first = first - period * math.floor(first[-1] / period)
+    return first, last + period * math.ceil((first[-1] - last[-1]) / period)
 
 
 def _columns(grid: Grid, flank: Flank, lines: tuple[Array, Array], finer: int) -> Array:

@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING, Any
 
 from camgeo.capabilities.dynamics.declared import FLOAT, LEAST_BACKLASH
 from camgeo.capabilities.dynamics.keys import Dynamics
+from camgeo.capabilities.dynamics.running import begins_at
 from camgeo.checks.declared import STANDS
 from kin.numeric.angles import degrees
 from kin.numeric.check import Check, about, failed
@@ -237,6 +238,8 @@ def _with_spring(scene: _Scene, entry: dict[str, Any], drive: Drive) -> tuple[di
     entry |= _float_speed(scene, drive)
     least = state.force.least
     detail = f"greatest {state.force.greatest:.6g}; with the natural frequency {train.ratio(rpm):.4g} times the shaft's"
+    if least < 0.0 and entry["float_rpm"] is not None:
+        detail = begins_at(entry["float_rpm"], rpm) + detail
     unit = "N m" if scene.unit_name == "deg" else "N"
     at_deg = degrees(state.force.least_at)
     return entry, Check(FLOAT.name, least >= 0.0, least, 0.0, unit, at_deg, "at_least", detail=detail)

@@ -9,6 +9,7 @@ import numpy as np
 from camgeo.capabilities.dynamics.declared import FLOAT
 from camgeo.capabilities.dynamics.figures import FORCE_GREATEST, FORCE_LEAST, GUIDE_FORCE, MEAN_FORCE, PRESSURE, TORQUE
 from camgeo.capabilities.dynamics.keys import BOUNDS
+from camgeo.capabilities.dynamics.running import begins_at, float_rpm
 from camgeo.capabilities.dynamics.running_forces import running_of
 from camgeo.measures.forces import PER_MM, ExtremeAtAngle
 from camgeo.measures.measured import ABRUPT, Measured
@@ -117,6 +118,9 @@ def float_check(running: Running, extremes: Extremes) -> Check | None:
     if sampled is not None:
         place = f"{degrees(sampled.at):.6g} degrees"
         detail += f"; the load, sampled near {place}, may be off by {sampled.within:.2g} {unit}, which is counted"
+    if least.value < 0.0:
+        rpm = float_rpm(running, judged_stretches(running) or [(0.0, TURN)])
+        detail = begins_at(rpm, running.train.rpm) + detail
     return Check(FLOAT.name, least.value >= 0.0, least.value, 0.0, unit, least.at_deg, "at_least", detail=detail)
 
 

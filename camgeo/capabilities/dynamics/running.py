@@ -313,3 +313,47 @@ def _lost(turn: Turn, names: Sequence[str], pull: Callable[[Array, float], Pull]
         else:
             losses.append(LossSpeed(name, None, None))
     return losses
+
+
+def begins_at(rpm: float, asked: float) -> str:
+    """Words for the speed, turns a minute, at which float begins, 0 for a contact that is lost at rest.
+
+    They end in a semicolon, before what follows.
+    """
+    begins = f"float begins at {rpm:.6g} rpm of the shaft" if rpm else "contact is lost at rest too"
+    return f"{begins}, and {asked:.6g} are asked for; "
+
+
+def float_rpm(running: Running, stretches: Sequence[tuple[float, float]]) -> float:
+    """Speed, turns a minute, from which a single contact is lost somewhere in stretches of the turn, rad.
+
+    With J the force of inertia at a speed of 1 rad/s and W the rest, it is lost from Omega^2 = -W/J on; the least over
+    the stretches and over the `doubts` counts. It is 0 for a contact that is lost at rest, and infinite for one that no
+    speed loses. Raises RoughError where the motion changes too abruptly, RecipeErrors for a load without a finite
+    value.
+    """
+    turn = running.turn
+
+    def parts(t: Array, more: float) -> tuple[Array, Array]:
+        rows = turn.rows(t)
+        rest = running.rest(t, running.position(rows)[0], more) + running.preload
+        return running.inertia(t, rows, 1.0), rest
+
+    speeds = [math.inf]
+    for more in running.doubts:
+
+        def held(t: Array, more: float = more) -> Array:
+            return parts(t, more)[1][None]
+
+        def share(t: Array, more: float = more) -> Array:
+            inertia, rest = parts(t, more)
+            return (-inertia / rest)[None]
+
+        for stretch in stretches:
+            ((least, _),) = turn.extremes(held, stretch)
+            if least.value <= 0.0:
+                return 0.0
+            ((_, most),) = turn.extremes(share, stretch)
+            if most.value > 0.0:
+                speeds.append(60.0 / TURN / math.sqrt(most.value))
+    return min(speeds)

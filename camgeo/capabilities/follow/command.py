@@ -28,7 +28,8 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
         "file", type=name_of, metavar="FILE", help="a drawing, a solid, or points x, y round the contour"
     )
-    parser.add_argument("--roller", type=length, metavar="R", help="radius of the roller, mm; 0 for a knife edge")
+    text = "radius of the roller, mm or with its unit, 0.375in; 0 for a knife edge"
+    parser.add_argument("--roller", type=length, metavar="R", help=text)
     parser.add_argument("--shoe", type=length, metavar="R", help="radius of a curved shoe, mm, in place of a roller")
     parser.add_argument("--flat", action="store_true", help="a flat face in place of a roller")
     parser.add_argument("--width", type=length, metavar="W", help="width of that face, centred on the stem's axis, mm")
@@ -103,10 +104,11 @@ def run(arguments: argparse.Namespace) -> int:
     followed = follow(arguments.file, **_asked(arguments))
     # files are written together, when all texts are made
     texts: dict[str, str] = {}
+    told: list[str] = []
     if arguments.table is not None:
         texts[arguments.table] = followed.table()
     if arguments.recipe is not None and lifts is not None:
-        texts[arguments.recipe] = followed.recipe(Path(lifts).name)
+        texts[arguments.recipe], told = followed.told_recipe(Path(lifts).name)
         if (rows := followed.lifts()) is not None:
             texts[lifts] = rows
     if arguments.page is not None:
@@ -117,7 +119,7 @@ def run(arguments: argparse.Namespace) -> int:
 
         say_json(as_json(followed.document()))
     else:
-        say(followed.summary())
+        say("\n".join([followed.summary(), *told]))
     return OK
 
 

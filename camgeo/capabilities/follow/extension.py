@@ -43,6 +43,10 @@ class FollowedOver(Protocol):
         """Text of a recipe of a cam with this motion, whose lifts are in the file `table`; CallError where none is."""
         ...
 
+    def told_recipe(self, table: str) -> tuple[str, list[str]]:
+        """Text of the recipe that the command writes, and lines on what it has that the summary does not tell."""
+        ...
+
     def lifts(self) -> str | None:
         """Lifts over the input as CSV text that the recipe reads; None where it needs none."""
         ...

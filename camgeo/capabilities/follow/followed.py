@@ -8,11 +8,13 @@ from typing import TYPE_CHECKING, Any, Literal
 
 import numpy as np
 
+from camgeo.capabilities.follow.laws import Laws, laws_of
 from camgeo.common.arguments import demand_type, short_repr
 from camgeo.common.errors import CallError
 from camgeo.common.rounding import upward
 from camgeo.common.terminal import escaped
 from camgeo.common.units import UNIT_MM
+from camgeo.motions.recognised import in_flow
 from kin.contour.pieces import LINE
 from kin.follower.measured import LEAST_DWELL
 from kin.follower.motion_error import ContactError
@@ -263,6 +265,32 @@ class Followed:
         """Dwells, in order: stretches of at least 10 degrees in which the position keeps within the reading."""
         return tuple(Rest(*dwell) for dwell in self._motion.dwells(self._reading))
 
+    @cached_property
+    def laws(self) -> Laws:
+        """The motion as segments of a recipe, where laws keep within the reading of it; else why there are none."""
+        if self.follower.yoke:
+            return Laws(None, why="a yoke has its motion over half a turn, which is kept point by point")
+        if self.unknown:
+            return Laws(None, why="the contour is closed across a gap, where nothing is known of the motion")
+        facets = (self.facets or 0.0) / self.follower.motion_to_mm
+        found = laws_of(self._motion, self.follower, self._reading, facets)
+        if found.begin is None:
+            return found
+        turned = math.degrees(self._asked.turn) + (found.begin if self.rotation == "ccw" else -found.begin)
+        return found._replace(why=f"{found.why}; give --turn={math.remainder(turned, 360.0):.6g} to begin elsewhere")
+
+    def law_lines(self, table: str) -> list[str]:
+        """Lines of text on the motion of a recipe by laws: what they are, or why it has the file `table` of lifts."""
+        laws, name = self.laws, escaped(table)
+        if laws.rows is None:
+            return [f"  the recipe has the motion as the table {name}: {laws.why}"]
+        unit = "mm" if self.unit == "mm" else "deg"
+        within = f"within {laws.off:.2g} {unit} of the motion"
+        return [
+            *(f"  {line}" for line in laws.lines),
+            f"  the recipe has these laws, {within}, and names the table {name} beside them",
+        ]
+
     @property
     def _reading(self) -> float:
         """The reading in the motion's unit: mm, or on an arm the angle that moves the touch by it, rad."""
@@ -312,14 +340,14 @@ class Followed:
         pairs = zip(np.degrees(theta).tolist(), (np.round(lift, 9) + 0.0).tolist(), strict=True)
         return "".join(["angle,lift\n", *(f"{angle:.12g},{value:.9f}\n" for angle, value in pairs)])
 
-    def recipe(self, table: str) -> str:
+    def recipe(self, table: str, *, laws: bool = False) -> str:
         """Text of a recipe of a cam with this motion, whose lifts are in the file `table`.
 
-        Its motion is within the reading of the rows. Its tolerance is twice the reading, so that the file passes when
-        it is judged by the recipe. It has no opening but a round bore, and passes over others when files are judged by
-        it. Raises TypeError for a `table` that is no str, CallError for one that is no printable name, for a yoke whose
-        breadth varies by more than two readings or whose steps are odd in number, and for a ring without a round
-        outline.
+        Its motion is within the reading of the rows. With `laws` it is that of `Followed.laws`, where there are some,
+        and the table stands in a comment. Its tolerance is twice the reading, so that the file passes when it is judged
+        by the recipe. It has no opening but a round bore, and passes over others when files are judged by it. Raises
+        TypeError for a `table` that is no str, CallError for one that is no printable name, for a yoke whose breadth
+        varies by more than two readings or whose steps are odd in number, and for a ring without a round outline.
         """
         demand_type("table", table, str, "a str")
         if not table.isprintable() or not table:
@@ -327,6 +355,12 @@ class Followed:
         reading = self.reading if self.unit == "mm" else math.degrees(self._reading)
         about = f"The motion of {escaped(self.path.name)} under a {self.follower.words}, within {self.reading:.6g} mm"
         cam = self._yoke_keys() if self.follower.yoke else self._disc_keys()
+        motion = [f"  motion: {{table: {_quoted(table)}, angle: cam, reading: {reading:.6g}}}"]
+        if laws and self.laws.rows is not None:
+            cam["base_radius"] = f"{self.laws.base:.9g}"
+            # lifts of the table count from the least position
+            beside = f"  # as it was followed: base_radius: {self.base_radius:.9g}, {motion[0].strip()}"
+            motion = ["  motion:", *(f"    - {in_flow(row)}" for row in self.laws.rows), beside]
         part = {"bore": self.bore, "outer": self.blank if self.follower.track != "external" else None}
         keys = ", ".join(f"{key}: {value:.9g}" for key, value in part.items() if value is not None)
         lines = [
@@ -334,7 +368,7 @@ class Followed:
             f"rotation: {self.rotation}",
             "cam:",
             *(f"  {key}: {value}" for key, value in cam.items()),
-            f"  motion: {{table: {_quoted(table)}, angle: cam, reading: {reading:.6g}}}",
+            *motion,
             *([f"part: {{{keys}}}"] if keys else []),
             *([OPENINGS] if self.openings or self._outline.passed else []),
             "export:",
@@ -383,6 +417,10 @@ class Followed:
     def summary(self) -> str:
         """Text for a terminal."""
         return summary(self)
+
+    def told_recipe(self, table: str) -> tuple[str, list[str]]:
+        """Text of the recipe with the laws of this motion where they fit, and lines of text on what it has."""
+        return self.recipe(table, laws=True), self.law_lines(table)
 
     def page(self) -> str:
         """HTML of the page of this motion's recipe, with the verdict on the file.
@@ -544,7 +582,7 @@ def judged_by_recipe(followed: Followed) -> Report:
     with tempfile.TemporaryDirectory(prefix="camgeo-") as folder:
         (Path(folder) / "lift.csv").write_text(followed.lifts(), encoding="utf-8")
         # no file has this text, and the name stands on the page alone: that of the contour's file, whatever it is
-        text, name = followed.recipe("lift.csv"), escaped(followed.path.stem)
+        text, name = followed.recipe("lift.csv", laws=True), escaped(followed.path.stem)
         recipe = replace(load_text(text, Path(folder) / "follow.yaml", escaped(str(followed.path))), name=name)
         units = next((name for name, mm in UNIT_MM.items() if mm == followed.units), None)
         return verify(recipe, followed.path, units=units, gap=followed.gap, page=True)

@@ -132,7 +132,8 @@ def describe_follower(
     touches = (roller is not None) + (shoe is not None) + flat
     if touches != 1:
         raise CallError(
-            "a follower has a roller, of radius 0 for a knife edge, or a shoe, or is flat: give one of them"
+            "a follower has a roller, of radius 0 for a knife edge, or a shoe, or is flat: give one of them, such as "
+            "--roller 9, --shoe 60 or --flat"
         )
     # faults of single values, then of arguments together
     lengths = {"roller": roller, "shoe": shoe, "width": width, "offset": offset} | {

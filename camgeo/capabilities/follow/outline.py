@@ -132,6 +132,10 @@ def read_outline(path: Path, asked: Reading) -> Outline:
             remedy = f"; give gap {upward(error.closing, 2)} to join them"
             if error.unstated and asked.units is None:
                 remedy += ", and units mm, or another and the gap by it: the drawing states none"
+        elif error.cams and error.unstated and asked.units is None:
+            raise _no_unit(path) from error
+        elif error.cams:
+            remedy = f": give one of these as at, such as --at {error.cams[-1]}"
         elif error.between is not None and asked.across is None:
             remedy = "; give across arc or chord to close it there"
         raise CallError(f"{name}: {error.message}{remedy}") from error
@@ -194,7 +198,7 @@ def _read_drawing(path: Path, asked: Reading) -> _Found:
     chains, bridge = drawing.chains, drawing.bridge
     if drawing.units_mm is None:
         if units is None:
-            raise CallError(f"{escaped(str(path))}: the drawing states no unit: give units")
+            raise _no_unit(path)
         chains, bridge = scaled(chains, units), None if bridge is None else bridge.scaled(units)
     else:
         _require_same_unit(path, units, drawing.units_mm)
@@ -202,11 +206,18 @@ def _read_drawing(path: Path, asked: Reading) -> _Found:
     return _Found(chains, remarks, bridge, bool(drawing.passed))
 
 
+def _no_unit(path: Path) -> CallError:
+    """Make the error for a drawing whose unit neither the file nor the call states."""
+    return CallError(f"{escaped(str(path))}: the drawing states no unit: give units, such as --units mm")
+
+
 def _read_points(path: Path, asked: Reading) -> _Found:
     """The polygon through points; raises CallError where no unit is stated, or both file and call state one."""
     found = read_contour_points(path, asked.units or 1.0, asked.across)
     if found[0].unit is None and asked.units is None:
-        raise CallError(f"{escaped(str(path))}: the points state no unit: give units, or head them x_mm,y_mm")
+        raise CallError(
+            f"{escaped(str(path))}: the points state no unit: give units, or head them x_mm,y_mm; --units mm states it"
+        )
     if found[0].unit is not None:
         _require_same_unit(path, asked.units, found[0].unit)
     chains = sorted((ClosedContour(points.contour) for points in found), key=lambda chain: -chain.contour.area)
@@ -324,4 +335,6 @@ def _remedy(chains: Sequence[ClosedContour]) -> str:
     boxes = [(chain.contour, chain.contour.box) for chain in chains[1:]]
     middles = [(hole, 0.5 * (box.x_min + box.x_max), 0.5 * (box.y_min + box.y_max)) for hole, box in boxes]
     places = [f"{x:.6g},{y:.6g}" for hole, x, y in middles if circle_about(hole, x, y) is not None]
-    return f"; give at, such as the middle of a hole: {' or '.join(places[:MOST_NAMED])}" if places else "; give at"
+    if not places:
+        return "; give at, such as --at 120,85"
+    return f"; give at, such as the middle of a hole: {' or '.join(places[:MOST_NAMED])}, as --at {places[0]}"

@@ -65,14 +65,14 @@ def _closed(recipe: IndexRecipe, motion: Motion) -> Motion:
 
 
 def stated_motion(design: IndexDesign) -> StatedMotion:
-    """The motion over the shaft angle, as the recipe states it: it does not return."""
+    """The angle of the turret over the shaft angle, as the recipe states it, from the start on: it does not return."""
     from camgeo.motions.stated import StatedMotion
 
     recipe = design.recipe
 
     def lift(theta: Array) -> Array:
         flat = np.asarray(theta, dtype=np.float64).ravel()
-        return np.asarray(design.law.derivatives(flat, 0)[0].reshape(np.shape(theta)))
+        return np.asarray(recipe.start + design.law.derivatives(flat, 0)[0].reshape(np.shape(theta)))
 
     shown = math.degrees(1.0)
     return StatedMotion(recipe.motion, TURN, recipe.motion.repeats, "nothing", lift, shown, shown)

@@ -198,6 +198,10 @@ class Barrel:
         del w
         return 1.0
 
+    def beside(self, w: float, z: Array) -> Array:
+        """Distances from the cam's axis, mm (n,), of a layer w, mm, at heights over the lower face, mm (n,)."""
+        return np.full_like(z, w)
+
     def rim(self, w: float) -> float:
         """Greatest distance from the cam's axis, mm, of a layer w, mm, between the end faces."""
         return w
@@ -347,6 +351,10 @@ class Globoid:
     def unit(self, w: float) -> float:
         """Length, mm, of a unit of h in a layer w, mm."""
         return w
+
+    def beside(self, w: float, z: Array) -> Array:
+        """Distances from the cam's axis, mm (n,), of a layer w, mm, at heights over the lower face, mm (n,)."""
+        return np.asarray(self.distance - np.sqrt(w * w - (z - self.height) ** 2))
 
     def rim(self, w: float) -> float:
         """Greatest distance from the cam's axis, mm, of a layer w, mm, between the end faces."""

@@ -1,53 +1,46 @@
-"""The page of an indexing cam: the turret turns before the blank; curves of its motion, pressure angles, figures."""
+"""The page of an indexing cam: the cam turns beside its turret, development, curves of its motion, figures."""
 
 from __future__ import annotations
 
 import math
 from functools import lru_cache
+from importlib.resources import files
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from camgeo.capabilities.indexing.charts import PARTS, development, legend, rollers, scale
+from camgeo.capabilities.indexing.engaged import Engaged
+from camgeo.capabilities.indexing.ribs import PLACES, RISE, UPRIGHT, layers
 from camgeo.capabilities.indexing.tables import motion_table
+from camgeo.capabilities.indexing.turning import scene, shares
 from camgeo.recipe.figures import PRESSURE_ANGLE
 from camgeo.report.page import tables
-from camgeo.report.page.page import picture, plotted
-from camgeo.report.page.scene import STEPS, FilledShape, MovingBody, Scene, pivot, poses, still
+from camgeo.report.page.asset import asset
+from camgeo.report.page.chart import FIELD, LEFT, TOP
+from camgeo.report.page.page import pack_numbers, picture, plotted
+from camgeo.report.page.scene import STEPS
 from camgeo.report.plot import Plot, Series
 from kin.numeric.angles import TURN
 
 if TYPE_CHECKING:
     from camgeo.capabilities.indexing.design import IndexDesign
+    from camgeo.capabilities.indexing.ribs import Layer
 
-JOINT = 0.016  # of the blank's width and length together: size of a joint
 
-
-def scene(design: IndexDesign, step: int = 0) -> Scene:  # noqa: ARG001 - the blank looks alike at all steps
-    """The blank of the cam, and its turret over the turn, in the recipe's unit."""
-    recipe = design.recipe
-    drawn = recipe.turret.drawn(recipe.roller, recipe.stops, recipe.sense)
-    theta = np.linspace(0.0, TURN, STEPS + 1)
-    psi = recipe.start + design.law.derivatives(theta, 0)[0]
-    x, z = drawn.centre
-    size = JOINT * 2.0 * float(np.abs(drawn.blank.points).max())
-    turned = poses(x, z, psi if drawn.way > 0 else math.pi - psi)
-    rollers = tuple(FilledShape("roller", (ring,), "roller") for ring in drawn.rollers)
-    bodies = (
-        MovingBody("cam", "cam", (FilledShape("metal", (drawn.blank,), "blank of the cam"),), still()),
-        MovingBody("turret", "follower", (FilledShape("follower", (drawn.hub,), "turret"),), turned),
-        MovingBody("rollers", "follower", rollers, turned),
-        pivot("pivot", x, z, size, "T"),
-    )
-    way = "clockwise" if recipe.rotation == "cw" else "counter-clockwise"
-    note = f"seen along the turret's axis, the cam without its track; it turns {way}, seen from above"
-    return Scene(bodies, note).scaled(1.0 / recipe.mm)
+def looks() -> tuple[str, str]:
+    """Return the rules of the chart, and the player that turns the cam."""
+    return asset("chart.css") + _asset("index.css"), _asset("index.js")
 
 
 @lru_cache(maxsize=1)
 def drawn(design: IndexDesign) -> dict[str, Any]:
-    """Data of the page's script that show the cam's blank and its turret, and turn this; the last are kept."""
+    """Data of the page's script that show the cam and its turret, and turn them; the last are kept."""
+    of = layers(design)
+    seen = scene(design, of=of)
     turn = np.linspace(0.0, TURN, STEPS + 1)
-    return picture(design.recipe, scene(design), turn, -1 if design.recipe.rotation == "cw" else 1)
+    shown = picture(design.recipe, seen, turn, -1 if design.recipe.rotation == "cw" else 1)
+    return {**shown, "player": {"name": "playIndexer", "data": _played(design, of, seen.digits)}}
 
 
 def script(design: IndexDesign) -> dict[str, Any]:
@@ -57,8 +50,25 @@ def script(design: IndexDesign) -> dict[str, Any]:
     return {**drawn(design), "marks": [], "plots": plots, "rests": rests, "linked": False, "contours": {}, "errors": []}
 
 
-def panels(report: dict[str, Any]) -> str:
-    """Return the HTML of the figures."""
+def panels(design: IndexDesign, report: dict[str, Any]) -> str:
+    """Return the HTML of the development, which a barrel has, and of the figures."""
+    return f'<div class="charts-and-figures">{_charts(design)}{_figures(report)}</div>'
+
+
+def _asset(name: str) -> str:
+    return (files("camgeo.capabilities.indexing") / name).read_text("utf-8")
+
+
+def _charts(design: IndexDesign) -> str:
+    if not design.recipe.turret.unrolls:
+        return ""
+    return (
+        '<section aria-labelledby="charts-head"><h2 id="charts-head">Development</h2><div class="charts">'
+        f"<figure>{development(design)}<figcaption>{legend(design)}</figcaption></figure></div></section>"
+    )
+
+
+def _figures(report: dict[str, Any]) -> str:
     rows = []
     for entry in report["indexing"]["figures"]:
         at = f"{entry['at']:.2f}°" if "at" in entry else ""
@@ -68,9 +78,43 @@ def panels(report: dict[str, Any]) -> str:
     return f"<section><h2>Figures</h2>{tables.html_table('Figures', ('figure', 'value', 'unit', 'at'), rows)}</section>"
 
 
+def _played(design: IndexDesign, of: list[Layer], digits: int) -> dict[str, Any]:
+    """Return the data of the cam's player in the recipe's unit; `digits` are those of the drawing's coordinates."""
+    recipe, mm = design.recipe, design.recipe.mm
+    length = recipe.length / mm
+    unrolled = recipe.turret.unrolls
+    return {
+        "sense": recipe.sense,
+        "facing": recipe.turret.facing,
+        "digits": digits,
+        "places": PLACES,
+        "rise": RISE,
+        "upright": UPRIGHT,
+        "parts": PARTS,
+        "length": length,
+        "layers": [
+            {
+                "radius": pack_numbers(each.radius / mm, length),
+                "share": share,
+                "first": each.first,
+                "last": each.first + each.bottom.size - 1,
+                "bottom": pack_numbers(each.bottom / mm, length),
+                "top": pack_numbers(each.top / mm, length),
+            }
+            for each, share in zip(of, shares(of), strict=True)
+        ],
+        "rollers": [
+            {"beside": pack_numbers(beside), "z": pack_numbers(z / mm)}
+            for beside, z in (rollers(design, np.linspace(0.0, TURN, PARTS + 1)) if unrolled else [])
+        ],
+        "flat": [scale(design) * mm, FIELD, scale(design) * recipe.length, LEFT, TOP],
+    }
+
+
 def _plots(design: IndexDesign) -> list[Plot]:
-    """Angle of the turret and its derivatives, and pressure angles of the best placed rollers."""
-    _, rows = motion_table(design, np.linspace(0.0, TURN, STEPS + 1))
+    """Angle of the turret and its derivatives, pressure angles of the best placed rollers, and rollers engaged."""
+    theta = np.linspace(0.0, TURN, STEPS + 1)
+    _, rows = motion_table(design, theta)
     _, angle, velocity, acceleration, lower, upper = rows.T
     shown = (("turret", "", angle), ("velocity", "/rad", velocity), ("acceleration", "/rad²", acceleration))
     plots = [Plot(name.capitalize(), f"°{per}", (Series(name, values),), dwells=True) for name, per, values in shown]
@@ -78,4 +122,9 @@ def _plots(design: IndexDesign) -> list[Plot]:
     lines = tuple((sign * math.degrees(value), "limit" if sign > 0 else "") for value in bounds for sign in (1.0, -1.0))
     note = "in the middle of the best placed roller's line; above 0 where the cam drives the turret on"
     both = Series("lower flank", lower), Series("upper flank", upper)
-    return [*plots, Plot("Pressure angle", "°", both, limits=lines, dwells=True, note=note)]
+    plots.append(Plot("Pressure angle", "°", both, limits=lines, dwells=True, note=note))
+    counts = tuple(
+        Series(f"{name} flank", Engaged(design, name, theta).bears.sum(axis=1).astype(float)) for name in design.flanks
+    )
+    note = "on which each flank bears at once"
+    return [*plots, Plot("Rollers engaged", "", counts, dwells=True, axis="rollers", holds=(0.0,), note=note)]

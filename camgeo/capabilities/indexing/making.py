@@ -72,12 +72,14 @@ def _mesh(design: IndexDesign, clock: Clock, request: FileRequest, path: Path) -
 
 
 def _view(design: IndexDesign, clock: Clock, request: FileRequest, path: Path) -> Made[IndexVerdict]:
-    """The cam as it turns, to look at."""
+    """The cam as it turns, with its turret, to look at."""
+    from camgeo.capabilities.indexing.actors import turret_actors
+
     with clock.stage("mesh glb"):
         mesh, _ = index_mesh(design, design.recipe.tolerance(request), numbers_of("glb", 1.0))
     with clock.stage("write glb"):
-        actor = Actor("cam", mesh, steady_turn(design.recipe.rotation), COLOURS[0])
-        write_glb(path, [actor], title=design.recipe.name)
+        cam = Actor("cam", mesh, steady_turn(design.recipe.rotation), COLOURS[0])
+        write_glb(path, [cam, *turret_actors(design)], title=design.recipe.name)
     return Made(FileResult(path, request, units=UNIT_MM["m"]))
 
 

@@ -62,7 +62,7 @@ def _pieces(verdict: IndexVerdict) -> int:
 
 
 def _seen(design: IndexDesign, step: int) -> Scene:
-    from camgeo.capabilities.indexing.index_page import scene
+    from camgeo.capabilities.indexing.turning import scene
 
     return scene(design, step)
 
@@ -79,14 +79,16 @@ def _script(design: IndexDesign, _: Sequence[Made[IndexVerdict]]) -> dict[str, A
     return script(design)
 
 
-def _panels(_: IndexDesign, report: dict[str, Any]) -> str:
+def _panels(design: IndexDesign, report: dict[str, Any]) -> str:
     from camgeo.capabilities.indexing.index_page import panels
 
-    return panels(report)
+    return panels(design, report)
 
 
 def _looks() -> tuple[str, str]:
-    return "", ""
+    from camgeo.capabilities.indexing.index_page import looks
+
+    return looks()
 
 
 def _drawings(design: IndexDesign, tolerance: float) -> list[tuple[str, Sequence[LayerOutline | Array]]]:

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, ClassVar, NamedTuple
 
 import numpy as np
 
-from camgeo.curve.ring import Ring, box, disc
+from camgeo.curve.ring import Ring, bar, disc
 from kin.numeric.angles import TURN
 from kin.numeric.records import dataclass
 
@@ -18,21 +18,22 @@ if TYPE_CHECKING:
     from camgeo.capabilities.indexing.forms import Barrel, Globoid
     from kin.indexing.forms import Form
 
-ARC = 24  # chords of an arc in a drawing
-HUB = 0.6  # of the pitch radius: a barrel's turret's hub in a drawing
-INSIDE = 0.95  # of the place where rollers begin: a globoid's
+RIM = 1.5  # radii of a roller from its axis to the rim of a dial, in a drawing
+HUB, SPOKE = 0.25, 0.4  # of the pitch radius, and of a roller's radius: hub and half width of spokes of a dial
+GAP = 0.2  # radii of a roller between a blank and the plate before it
+STUD, INNER_END = 0.7, 0.97  # of a roller's radius, and of the hub's: half width and inner end of the stud of a roller
 LESS = 0.999  # of a greatest length, in a remedy
 
 
 class Drawn(NamedTuple):
-    """A turret before its cam, seen along the turret's axis, mm: the blank, the turret's centre, hub and rollers.
+    """A turret seen along its axis, mm: its centre, its body, its rim, and its rollers.
 
-    Hub and rollers are in the turret's own axes, which turn with its angle where `way` is 1, against it where -1.
+    Body, rim and rollers are in the turret's own axes, which turn with its angle where `way` is 1, against it where -1.
     """
 
-    blank: Ring
     centre: tuple[float, float]
-    hub: Ring
+    body: tuple[Ring, ...]
+    rim: Ring
     rollers: tuple[Ring, ...]
     way: int
 
@@ -49,6 +50,26 @@ class Roller:
     outer: float
 
 
+class Bar(NamedTuple):
+    """A round bar between two places (3,), mm, of a radius, mm."""
+
+    start: tuple[float, float, float]
+    end: tuple[float, float, float]
+    radius: float
+
+
+class Standing(NamedTuple):
+    """A turret as round bars: its body and its rollers, and its axis towards who looks along it, a unit vector.
+
+    Bars are in the turret's own axes: to the right and up as it is seen, and towards the viewer.
+    """
+
+    body: tuple[Bar, ...]
+    rollers: tuple[Bar, ...]
+    axis: tuple[float, float, float]
+    right: tuple[float, float, float]
+
+
 @dataclass(frozen=True)
 class Turret(ABC):
     """A turret beside a cam of its form, in words and pictures."""
@@ -56,6 +77,7 @@ class Turret(ABC):
     word: ClassVar[str]  # its name in reports
     about: ClassVar[str]  # whose axis the layers are about
     unrolls: ClassVar[bool]  # whether its layers are cylinders, which have developments
+    facing: ClassVar[float]  # polar angle beside the shaft angle, rad, that faces who looks along the turret's axis
     form: Barrel | Globoid
 
     @property
@@ -80,6 +102,10 @@ class Turret(ABC):
         """Shapes to look at, with so many rollers; `sense` -1 of a cam that is mirrored."""
 
     @abstractmethod
+    def standing(self, roller: Roller, stops: int) -> Standing:
+        """Bars to look at, of so many rollers."""
+
+    @abstractmethod
     def intended(self) -> Form:
         """The form in kin's words."""
 
@@ -91,6 +117,7 @@ class BarrelTurret(Turret):
     word: ClassVar[str] = "barrel"
     about: ClassVar[str] = "the cam"
     unrolls: ClassVar[bool] = True
+    facing: ClassVar[float] = 0.0
     form: Barrel
 
     @property
@@ -124,16 +151,29 @@ class BarrelTurret(Turret):
         return None
 
     def drawn(self, roller: Roller, stops: int, sense: float) -> Drawn:
-        """The barrel as a rectangle, ends of rollers as discs."""
-        form, angles = self.form, TURN * np.arange(stops) / stops
-        places = form.pitch * np.column_stack([np.cos(angles), np.sin(angles)])
+        """A dial with spokes, and the ends of its rollers as discs."""
+        angles = TURN * np.arange(stops) / stops
+        ways = np.column_stack([np.cos(angles), np.sin(angles)])
+        places = (self.form.pitch * ways).tolist()
+        ends = ((self.form.pitch - (1.0 + SPOKE) * roller.radius) * ways).tolist()
+        spokes = tuple(bar((0.0, 0.0), (x, y), 2.0 * SPOKE * roller.radius) for x, y in ends)
         return Drawn(
-            box(-form.radius, 0.0, form.radius, form.length),
-            (sense * form.offset, form.height),
-            disc(0.0, 0.0, HUB * form.pitch),
-            tuple(disc(x, y, roller.radius) for x, y in places.tolist()),
-            -form.side * round(sense),
+            (sense * self.form.offset, self.height),
+            (*spokes, disc(0.0, 0.0, HUB * self.form.pitch)),
+            disc(0.0, 0.0, self.form.pitch + RIM * roller.radius),
+            tuple(disc(x, y, roller.radius) for x, y in places),
+            -self.form.side * round(sense),
         )
+
+    def standing(self, roller: Roller, stops: int) -> Standing:
+        """A plate before the cam, from which the rollers' studs reach towards its axis."""
+        angles = TURN * np.arange(stops) / stops
+        places = (self.form.pitch * np.column_stack([np.cos(angles), np.sin(angles)])).tolist()
+        near = max(roller.outer, self.form.blank) + GAP * roller.radius
+        plate = Bar((0.0, 0.0, near), (0.0, 0.0, near + roller.radius), self.form.pitch + RIM * roller.radius)
+        studs = tuple(Bar((x, y, roller.outer), (x, y, near), STUD * roller.radius) for x, y in places)
+        rollers = tuple(Bar((x, y, roller.inner), (x, y, roller.outer), roller.radius) for x, y in places)
+        return Standing((plate, *studs), rollers, (1.0, 0.0, 0.0), (0.0, 1.0, 0.0))
 
     def intended(self) -> Form:
         """Kin's barrel."""
@@ -150,6 +190,7 @@ class GloboidTurret(Turret):
     word: ClassVar[str] = "globoid"
     about: ClassVar[str] = "the turret"
     unrolls: ClassVar[bool] = False
+    facing: ClassVar[float] = -0.5 * math.pi
     form: Globoid
 
     @property
@@ -161,20 +202,40 @@ class GloboidTurret(Turret):
         """No problem: rollers leave a globoid outwards, and are far from it behind the turret's axis."""
         return None
 
-    def drawn(self, roller: Roller, stops: int, sense: float) -> Drawn:  # noqa: ARG002 - both ways look alike
-        """The globoid as its outline, rollers from the side."""
-        form = self.form
-        z = np.linspace(0.0, form.length, ARC + 1)
-        r = form.distance - np.sqrt(form.radius * form.radius - (z - form.height) ** 2)
-        outline = np.concatenate([np.column_stack([r, z]), np.column_stack([-r[::-1], z[::-1]])])
-        low, high, half = roller.inner, roller.outer, roller.radius
-        corners = np.array([(low, -half), (high, -half), (high, half), (low, half)])
-        rollers = []
-        for angle in (TURN * np.arange(stops) / stops).tolist():
+    def drawn(self, roller: Roller, stops: int, sense: float) -> Drawn:  # noqa: ARG002 - it is its own mirror image
+        """A wheel with studs, and its rollers from the side."""
+
+        def across(low: float, high: float, half: float, angle: float) -> Ring:
+            corners = np.array([(low, -half), (high, -half), (high, half), (low, half)])
             c, s = math.cos(angle), math.sin(angle)
-            rollers.append(Ring.through(corners @ np.array([[c, s], [-s, c]])))
-        hub = disc(0.0, 0.0, INSIDE * roller.inner)
-        return Drawn(Ring.through(outline), (form.distance, form.height), hub, tuple(rollers), -1)
+            return Ring.through(corners @ np.array([[c, s], [-s, c]]))
+
+        angles = (TURN * np.arange(stops) / stops).tolist()
+        low, high, half = roller.inner, roller.outer, roller.radius
+        hub = low - half
+        studs = tuple(across(INNER_END * hub, low, STUD * half, angle) for angle in angles)
+        return Drawn(
+            (self.form.distance, self.height),
+            (*studs, disc(0.0, 0.0, hub)),
+            disc(0.0, 0.0, 0.5 * hub),
+            tuple(across(low, high, half, angle) for angle in angles),
+            -1,
+        )
+
+    def standing(self, roller: Roller, stops: int) -> Standing:
+        """A wheel that stands in the throat, with radial studs."""
+        half = roller.radius
+        hub = min(roller.inner, self.form.blank) - half
+        angles = (TURN * np.arange(stops) / stops).tolist()
+
+        def radial(low: float, high: float, radius: float, angle: float) -> Bar:
+            c, s = math.cos(angle), math.sin(angle)
+            return Bar((low * c, low * s, 0.0), (high * c, high * s, 0.0), radius)
+
+        wheel = Bar((0.0, 0.0, -half), (0.0, 0.0, half), hub)
+        studs = tuple(radial(INNER_END * hub, roller.inner, STUD * half, angle) for angle in angles)
+        rollers = tuple(radial(roller.inner, roller.outer, half, angle) for angle in angles)
+        return Standing((wheel, *studs), rollers, (0.0, -1.0, 0.0), (1.0, 0.0, 0.0))
 
     def intended(self) -> Form:
         """Kin's globoid."""

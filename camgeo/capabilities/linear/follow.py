@@ -170,6 +170,10 @@ class FollowedPlate:
         ]
         return "\n".join(lines)
 
+    def told_recipe(self, table: str) -> tuple[str, list[str]]:
+        """Text of `recipe`; the summary tells what it has."""
+        return self.recipe(table), []
+
     def page(self) -> str:
         """Raise CallError: there is none."""
         raise CallError(NO_PAGE)

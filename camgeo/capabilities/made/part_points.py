@@ -188,7 +188,8 @@ def scale_of(recipe: Recipe, tables: Sequence[PointTable], units: float | None) 
         raise CallError(f"a heading states a unit of {next(iter(stated)):.6g} mm; leave --units out")
     if stated or units is not None:
         return next(iter(stated), units or 1.0), []
-    return recipe.mm, [f"no heading states a unit: the points are taken in that of the recipe, {recipe.units}; --units"]
+    taken = f"no heading states a unit: the points are taken in that of the recipe, {recipe.units}"
+    return recipe.mm, [f"{taken}; another is given by --units"]
 
 
 # --- which disc and surface a point is on -----------------------------------------------------------------------------

@@ -49,9 +49,11 @@ function playScene(data, begin = null) {
     };
   }
 
-  // a value with its unit, to some ten-thousandth of `span`, the range of its plot, or of itself; 0 without digits
+  // a value with its unit, to some ten-thousandth of `span`, the range of its plot, or of itself; 0 without digits; where
+  // the unit is empty a count
   function tidy(value, unit, span = 0) {
     if (!Number.isFinite(value)) return "–";
+    if (unit === "") return value.toFixed(0);
     const size = span || Math.abs(value) || 1;
     const digits = Math.min(Math.max(3 - Math.floor(Math.log10(size)), 0), 12);
     const fixed = value.toFixed(digits);
@@ -366,7 +368,7 @@ function playScene(data, begin = null) {
         const narrow = text.length > 6 ? { textLength: 40, lengthAdjust: "spacingAndGlyphs" } : {};
         made("text", { x: LEFT - 5, y: y + 4, "text-anchor": "end", ...narrow }, this.svg).textContent = text;
       }
-      const upright = `${this.plot.axis}, ${counted}${this.plot.unit}`;
+      const upright = [this.plot.axis, counted + this.plot.unit].filter(Boolean).join(", ");
       const middle = [0.5 * (LEFT + this.width - RIGHT), 0.5 * (TOP + HEIGHT - BOTTOM)];
       const axis = (text, place) => (made("text", { ...place, "text-anchor": "middle" }, this.svg).textContent = text);
       const narrow = upright.length > LETTERS ? { textLength: HEIGHT - TOP - BOTTOM, lengthAdjust: "spacingAndGlyphs" } : {};

@@ -97,7 +97,7 @@ def drawing_about_shaft(
         pieces = pieces.enlarged(scale) if scale != 1.0 else pieces
         near = rounded(curves, scale, closeness(pieces, options.gap and options.gap / unstated))
         sound, _ = without_faults(pieces, run, curves, near.same, path)
-        which, passed = about_shaft(curves, Strokes(pieces, run, sound, near), shaft, fault)
+        which, passed = about_shaft(curves, Strokes(pieces, run, sound, near), shaft, fault, unstated)
     except ReadError:
         if options.across is None or fault.between is None:
             raise
@@ -128,9 +128,11 @@ def bridged_over(
 
 
 def about_shaft(
-    curves: CutEntities, strokes: Strokes, shaft: tuple[float, float], fault: ReadError
+    curves: CutEntities, strokes: Strokes, shaft: tuple[float, float], fault: ReadError, unstated: float = 1.0
 ) -> tuple[Mask, tuple[str, ...]]:
     """Entities (n,) of a cam on its shaft, at (x, y), mm, and words for the others.
+
+    Of a drawing that states no unit pieces and shaft are in its own unit, which is taken to be `unstated` mm long.
 
     Each layer is joined by itself, without what ends nowhere. The cam is what goes round the shaft and is neither a
     circle about it nor a frame of lines along x and y; what lies in it and meets none of it stays with it. Raises
@@ -157,7 +159,7 @@ def about_shaft(
         name: rings for name, rings in around.items() if any(not is_frame(ring.contour) for ring in rings)
     }
     if not cams:
-        raise elsewhere(layers, shaft, fault)
+        raise elsewhere(layers, shaft, fault, unstated)
     core = [ring for name in cams for ring in around[name] if not is_frame(ring.contour)]
     if first_meeting([ring.contour for ring in core]) is not None:
         raise fault
@@ -176,8 +178,13 @@ def about_shaft(
     return which, in_words(curves, which)
 
 
-def elsewhere(layers: Sequence[Layer], shaft: tuple[float, float], fault: ReadError) -> ReadError:
-    """Return the error where no contour goes round the shaft: places of cams where there are some, else `fault`."""
+def elsewhere(
+    layers: Sequence[Layer], shaft: tuple[float, float], fault: ReadError, unstated: float = 1.0
+) -> ReadError:
+    """Return the error where no contour goes round the shaft: places of cams where there are some, else `fault`.
+
+    Contours and shaft are in units of `unstated` mm, the places in the error in mm.
+    """
     rings = [ring.contour for layer in layers for ring in layer.chains if not is_frame(ring.contour)]
     rounds = {k: middle_of(ring) for k, ring in enumerate(rings)}
     round_rings = {k: at for k, at in rounds.items() if circle_about(rings[k], *at) is not None}
@@ -189,12 +196,14 @@ def elsewhere(layers: Sequence[Layer], shaft: tuple[float, float], fault: ReadEr
     for cam in cams[:MOST_NAMED]:
         bores = [k for k in round_rings if _holds(cam, rings[k])]
         largest = max(bores, key=lambda k: abs(rings[k].area), default=None)
-        places.append("{:.6g},{:.6g}".format(*(middle_of(cam) if largest is None else round_rings[largest])))
-    where = f"no closed contour goes round {shaft[0]:.9g}, {shaft[1]:.9g}, where the shaft is"
+        x, y = middle_of(cam) if largest is None else round_rings[largest]
+        places.append(f"{unstated * x:.6g},{unstated * y:.6g}")
+    where = ", ".join(f"{unstated * value:.9g}" for value in shaft)
     count = f"it has {len(cams)} cams, " if len(cams) > 1 else "it has a cam "
-    return ReadError(
-        "several", f"{where}; {count}at {' and '.join(places)}: give one of these as its place", fault.path
-    )
+    told = f"no closed contour goes round {where}, where the shaft is; {count}at {' and '.join(places)}"
+    error = ReadError("several", told, fault.path)
+    error.cams, error.unstated = tuple(places), fault.unstated
+    return error
 
 
 def middle_of(contour: Contour) -> tuple[float, float]:

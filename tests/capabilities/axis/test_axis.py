@@ -256,6 +256,40 @@ def test_the_page_has_four_curves_in_time_with_their_limits(text: str, shape: st
     assert "svg" in camgeo.design(path)._repr_html_()
 
 
+@pytest.mark.parametrize("units", ["mm", "inch"])
+def test_the_page_of_a_judged_table_has_its_error(units: str, tmp_path: Path) -> None:
+    """One row of a table is moved by 0.02, twice the tolerance: the error is that there, and ends at its neighbours."""
+    path = written(tmp_path, f"units: {units}\n{PUSH}")
+    assert camgeo.export(path, tmp_path / "out").ok
+    text = (tmp_path / "out" / "axis" / "axis.csv").read_text(encoding="utf-8")
+    rows = text[text.index("\nmaster_deg") :].splitlines()[2:]
+    place = next(k for k, row in enumerate(rows) if float(row.split(",")[0]) > 40.0)
+    angle, slave, rates = rows[place].split(",", 2)
+    moved = f"{angle},{float(slave) + 0.02:.9f},{rates}"
+    (tmp_path / "off.csv").write_text(text.replace(f"\n{rows[place]}\n", f"\n{moved}\n"), encoding="utf-8")
+    report = camgeo.verify(path, tmp_path / "off.csv", page=True)
+    assert not report.ok
+    assert report.page is not None
+    data = report.page.split('"title":"Error of off.csv"')[1].split("]}]")[0]
+    digits, steps = re.findall(r'"d":(-?\d+),"v":\[([^\]]*)', data)[0]
+    error = np.cumsum([float(step) for step in steps.split(",")]) / 10.0 ** int(digits)
+    angles = np.arange(len(error)) * 360.0 / (len(error) - 1)
+    before, at, after = (float(rows[place + k].split(",")[0]) for k in (-1, 0, 1))
+    assert np.abs(error).max() == pytest.approx(0.02, rel=0.01)
+    assert angles[np.abs(error).argmax()] == pytest.approx(at, abs=0.51)
+    assert np.abs(error[(angles < before) | (angles > after)]).max() < 0.01
+    assert '[0.01,"tolerance"],[-0.01,""]' in report.page
+
+
+def test_a_file_that_is_no_table_has_a_page_without_its_error(tmp_path: Path) -> None:
+    path = written(tmp_path, PUSH)
+    (tmp_path / "no.csv").write_text("master_deg,other\n0,2\n", encoding="utf-8")
+    report = camgeo.verify(path, tmp_path / "no.csv", page=True)
+    assert not report.ok
+    assert report.page is not None
+    assert '"title":"Error of' not in report.page
+
+
 def test_an_axis_that_stands_or_runs_on_evenly_is_made(tmp_path: Path) -> None:
     """A motion without velocity, and one without acceleration, of which nothing is a share."""
     files = "{csv: {as: controller, for: rockwell, acceleration_error: 1}}, html"

@@ -130,6 +130,19 @@ def test_a_drawing_is_that_of_a_lobe(tmp_path: Path, capsys: pytest.CaptureFixtu
     assert f"a camshaft takes no {kind}; leave it out, or give the recipe of a lobe" in capsys.readouterr().err
 
 
+@pytest.mark.parametrize(("files", "where"), [("[{stl: {parts: all}}]", "files[0].stl."), ("[stl], parts: all", "")])
+def test_a_solid_has_shaft_and_lobes_in_one_body(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str], files: str, where: str
+) -> None:
+    path = shaft(tmp_path, TWO, files=files)
+    assert main(["check", str(path)]) == 2
+    told = capsys.readouterr().err
+    assert f"export.{where}parts: each solid of a camshaft has shaft, journals and all lobes in one body; leave" in told
+    path = shaft(tmp_path, TWO, files="[{stl: {part: all}}]")
+    assert main(["check", str(path)]) == 2
+    assert "export.files[0].stl.part: unknown key; " in capsys.readouterr().err
+
+
 @pytest.mark.parametrize(
     ("recipe", "message"),
     [

@@ -48,6 +48,9 @@ def test_the_checks_that_are_told_are_made(tmp_path: Path, shaft: str, more: str
     report = camgeo.check(recipe)
     assert report.ok
     assert {tuple(one) for one in foresee(recipe)} == {(check.name, check.file) for check in report.checks}
+    told = [remark.sentence for remark in report.remarks if remark.name == "lobe-checks"]
+    left = "float of lobe.yaml is judged by its own export alone"
+    assert told == ([left] if more else [])
 
 
 def test_the_starter_lists_only_files_of_camshafts() -> None:

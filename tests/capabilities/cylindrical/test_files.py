@@ -449,6 +449,7 @@ def test_remedies_hold(limit: str, words: str, change: tuple[str, str], tmp_path
     assert exported(tmp_path, changed(text, change)).ok
 
 
+@pytest.mark.costly("drums on both sides of each figure that is told")
 @pytest.mark.parametrize(
     ("text", "most", "ways"),
     [
@@ -474,10 +475,12 @@ def test_a_larger_drum_and_a_longer_motion_are_gentler(text: str, most: float, w
         return next(each.value for each in figures_of(design_of(text)) if each.name == "pressure-angle")
 
     for share, holds in ((1.0, True), (0.995, False)):
-        more = share * (radius - float(re.search(r"^  radius: (\d+)", text, re.MULTILINE)[1]))  # type: ignore[index]
-        farther = re.sub(
-            r"(^  radius|from|at): (\d+)", lambda m, by=more: f"{m[1]}: {float(m[2]) + by!r}", text, flags=re.MULTILINE
-        )
+        more = share * (radius - float(re.search(r"^  radius: (\d+)", text, re.MULTILINE)[1]))
+
+        def moved(found: re.Match[str], by: float = more) -> str:
+            return f"{found[1]}: {float(found[2]) + by!r}"
+
+        farther = re.sub(r"(^  radius|from|at): (\d+)", moved, text, flags=re.MULTILINE)
         assert (steep(farther) <= most) is holds
         for by in longer:
             over = share * by

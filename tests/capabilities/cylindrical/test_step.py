@@ -433,6 +433,36 @@ def test_a_coarse_solid_of_a_rib_on_an_arm_is_told(tmp_path: Path) -> None:
     assert all(0.01 < flank.measured_error < 0.2 for flank in verdict.flanks)
 
 
+STEEPER = """
+cam:
+  kind: cylindrical
+  radius: 42
+  track: {rib: {distance: 58, depth: 5}}
+  follower: {radius: 4.3, arm: {length: 59, offset: -58.6, pivot: 75, side: leading}}
+  pitch_height: 65
+  motion:
+    - {rise: 29, over: 116, law: polynomial-4567}
+    - {dwell: 80}
+    - {return: 29, over: 115, law: cycloidal}
+    - {dwell: 49}
+part: {length: 160, bore: 30}
+export: {tolerance: 0.02, files: [step]}
+"""
+
+
+@pytest.mark.costly("a solid and two verdicts")
+def test_a_steep_rib_on_an_arm_is_told(tmp_path: Path) -> None:
+    """Its pressure angle is above 60 degrees; metal for a roller that is 0.1 larger is not taken for it."""
+    pytest.importorskip("OCP")
+    path, design, _ = written(tmp_path, STEEPER, 0.02)
+    verdict = judged(path, design, 0.02)
+    assert verdict.ok, [check for check in verdict.checks if not check.ok]
+    assert all(flank.measured_error < 0.02 for flank in verdict.flanks)
+    assert all(flank.motion.remainder < 0.01 for flank in verdict.flanks)
+    other = design_of(changed(STEEPER, ("radius: 4.3,", "radius: 4.4,")))
+    assert {("contour", "lower"), ("contour", "upper")} <= refused(judged(path, other, 0.02))
+
+
 def test_a_solid_whose_faces_enclose_nothing_is_not_read(sound: tuple[str, DrumDesign, Path]) -> None:
     """All of its points are mirrored, and its faces and bounds are not."""
     text, design, folder = sound

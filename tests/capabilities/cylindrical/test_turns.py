@@ -14,7 +14,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 import pytest
-from capabilities.cylindrical.made_drums import changed, design_of, recipe_of
+from capabilities.cylindrical.made_drums import changed, design_of
 from capabilities.cylindrical.wound_drums import (
     SCREW,
     SCREW_ROWS,
@@ -29,13 +29,10 @@ from support.heavy import trimesh
 import camgeo
 from camgeo.capabilities.cylindrical.checks_of import walls
 from camgeo.capabilities.cylindrical.crossings import meetings
-from camgeo.capabilities.cylindrical.exact import designed
 from camgeo.capabilities.cylindrical.figures import figures_of, volume
-from camgeo.capabilities.cylindrical.making import foresee
 from camgeo.capabilities.cylindrical.shoe import longest
 from camgeo.capabilities.cylindrical.solid import drum_mesh
 from camgeo.capabilities.cylindrical.tables import flank_table
-from camgeo.common.clock import Clock
 from camgeo.files.mesh import Item, Mesh
 from camgeo.output.extension import MAKING, numbers_of
 from camgeo.schema.errors import RecipeErrors
@@ -376,12 +373,6 @@ def test_recipes_of_several_turns_with_a_fault(pairs: list[tuple[str, str]], tol
     with pytest.raises(RecipeErrors) as refused:
         design_of(changed(SCREW, *pairs))
     assert told in str(refused.value)
-
-
-def test_step_of_several_turns_is_refused_with_what_serves() -> None:
-    recipe = recipe_of(changed(SCREW, ("[stl]", "[step]")))
-    with pytest.raises(RecipeErrors, match="crosses itself, is not made yet; give stl, 3mf or ply"):
-        foresee(designed(recipe, Clock()), recipe.export.files[0])
 
 
 class LawPins(Pins):

@@ -483,6 +483,7 @@ def test_curvature_across_the_line() -> None:
         close(flanks[name].curvature(np.radians([float(theta)]), np.array([float(rho)]))[0], wanted)
 
 
+@pytest.mark.costly("the one drum that is cut short, with the pressure sought over its turn")
 def test_the_pressure_of_a_line_that_a_cut_shortens() -> None:
     """Half way along what carries, by the judge's flank: it begins where no other roller has gone deeper."""
     driven = "undercut: shorten\n  drive: {load: 200, material: steel}"
@@ -518,6 +519,7 @@ def test_the_pressure_of_a_line_that_a_cut_shortens() -> None:
     assert middle.value == pytest.approx(max(pressures), rel=2e-3)
 
 
+@pytest.mark.costly("two drums and all of their figures")
 def test_the_pressure_where_nothing_is_cut_though_it_might_be() -> None:
     driven = ("  pitch_height", "  drive: {load: 200, material: steel}\n  pitch_height")
     told = [

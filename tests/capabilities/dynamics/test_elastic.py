@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import json
 import math
+import re
 from contextlib import suppress
 from typing import TYPE_CHECKING, Any
 
@@ -130,6 +131,8 @@ def test_beyond_the_speed_at_which_float_begins_the_check_fails() -> None:
     assert not outcome.ok
     failed = {(check["name"], check.get("file")) for check in outcome.report["checks"] if not check["ok"]}
     assert failed == {("float", None), ("float", "train.dxf")}
+    (intended,) = (check for check in outcome.report["checks"] if check["name"] == "float" and "file" not in check)
+    assert re.match(r"float begins at 755\.3\d* rpm of the shaft, and 900 are asked for; greatest ", intended["detail"])
     run = outcome.report["dynamics"]["runs"][0]
     assert not run["steady"]["holds"]
     assert run["transient"]["least_force"] == 0.0

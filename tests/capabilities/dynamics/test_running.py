@@ -12,6 +12,7 @@ import pytest
 
 import camgeo
 from camgeo.capabilities.dynamics.keys import Dynamics
+from camgeo.capabilities.dynamics.running import float_rpm
 from camgeo.capabilities.dynamics.running_forces import running_of
 from camgeo.cli.main import main
 from camgeo.output.pipeline import check
@@ -278,3 +279,49 @@ def test_pressures_carry_their_units(stated: str, mega: float) -> None:
         RecipeErrors, match=r"'lbf' is no unit of a pressure, .* give N/mm\^2, N/mm², MPa, GPa, psi or ksi"
     ):
         read(text.replace(f"at_most: {stated}", "at_most: 3 lbf").encode(), Path("cam.yaml"))
+
+
+@pytest.mark.parametrize(
+    ("load", "preload", "rate", "rpm"),
+    [
+        (0, 80, 0, 60 / math.tau * math.sqrt(80 / (1.2 * 0.004))),
+        (20, 60, 5000, 60 / math.tau * math.sqrt((80 + 2 * 5000 * 0.004) / (1.2 * 0.004))),
+        (-100, 80, 0, 0.0),
+    ],
+)
+def test_the_speed_at_which_float_begins(load: float, preload: float, rate: float, rpm: float) -> None:
+    """By hand for y = 4 mm (1 - cos t): the force m Omega^2 a cos t + k y + F0 is least where the follower is highest.
+
+    A load that pulls more than the spring presses loses the follower at rest.
+    """
+    text = f"""\
+cam:
+  kind: disc
+  base_radius: 40
+  follower: {{kind: flat}}
+  motion: {{formula: 4*(1 - cos(t))}}
+dynamics: {{mass: 1.2, rpm: 2000, preload: {preload}, rate: {rate}, load: "{load}"}}
+"""
+    recipe = read(text.encode(), Path("cam.yaml"))
+    running = running_of(recipe, designed(recipe))
+    assert running is not None
+    assert float_rpm(running, [(0.0, math.tau)]) == pytest.approx(rpm, rel=1e-9)
+
+
+def test_float_names_its_speed() -> None:
+    (floats,) = (each for each in report("", "").get("checks", ()) if each["name"] == "float")
+    assert floats["ok"]
+    assert "begins" not in floats["detail"]
+    fast = CAM.replace("rpm: 300", "rpm: 900").replace(", MATERIAL", "")
+    (floats,) = (
+        each for each in check(read(fast.encode(), Path("cam.yaml"))).report["checks"] if each["name"] == "float"
+    )
+    recipe = read(fast.encode(), Path("cam.yaml"))
+    running = running_of(recipe, designed(recipe))
+    assert running is not None
+    rpm = float_rpm(running, [(0.0, math.tau)])
+    assert floats["detail"].startswith(f"float begins at {rpm:.6g} rpm of the shaft, and 900 are asked for; greatest ")
+    for speed, holds in ((0.999 * rpm, True), (1.001 * rpm, False)):
+        near = read(fast.replace("rpm: 900", f"rpm: {speed:.9g}").encode(), Path("cam.yaml"))
+        (judged,) = (each for each in check(near).report["checks"] if each["name"] == "float")
+        assert judged["ok"] == holds

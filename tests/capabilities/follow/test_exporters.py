@@ -15,6 +15,7 @@ import pytest
 from support.heavy import ezdxf
 
 import camgeo
+from camgeo.cli.main import main
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -214,6 +215,48 @@ def test_each_is_followed_at_the_first_try(tmp_path: Path, draw: Callable[[Path]
     followed = camgeo.follow(path, roller=5.0, steps=72, **how)
     assert followed.lift == pytest.approx(10.0, abs=near)
     assert followed.base_radius == pytest.approx(25.0 if draw in {rhino, in_space} else 20.0, abs=max(near, 1e-4))
+
+
+def test_the_place_of_a_shaft_in_a_drawing_without_a_unit(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    """First the unit, then the place, as options that the next call takes; a verdict has no such option."""
+    path = tmp_path / "cam.dxf"
+    made = document("R2010")
+    made.header["$INSUNITS"] = 0
+    turn = np.linspace(0.0, 2.0 * math.pi, 360, endpoint=False)
+    reach = 1.5 + 0.2 * np.cos(turn)  # inches
+    places = np.column_stack([3.0 + reach * np.cos(turn), 2.0 + reach * np.sin(turn)])
+    made.modelspace().add_lwpolyline(places.tolist(), close=True)
+    made.modelspace().add_circle((3.0, 2.0), 0.25)
+    made.modelspace().add_line((0.0, 2.0), (6.0, 2.0), dxfattribs={"layer": "AXES"})
+    made.saveas(path)
+    call = ["follow", str(path), "--roller", "0.375in"]
+    assert main(call) == 2
+    assert capsys.readouterr().err.endswith("the drawing states no unit: give units, such as --units mm\n")
+    assert main([*call, "--units", "inch"]) == 2
+    told = capsys.readouterr().err
+    assert told.endswith("; it has a cam at 76.2,50.8: give one of these as at, such as --at 76.2,50.8\n")
+    for place in ("76.2,50.8", "3in,2in"):
+        assert main([*call, "--units", "inch", "--at", place]) == 0
+        words = capsys.readouterr().out
+        assert "roller of radius 9.525 mm on a stem" in words
+        lift = float(words.partition("  lift ")[2].partition(" mm")[0])
+        assert lift == pytest.approx(10.16, abs=2e-3)  # 0.4 in between both places on its axis, but for the chords
+    recipe = tmp_path / "round.yaml"
+    recipe.write_text(
+        "cam: {kind: disc, base_radius: 33.02, follower: {kind: roller, radius: 9.525},\n"
+        "  motion: {formula: 1 - cos(t)}}\n"
+        "verify: {openings: ignore}\n",
+        encoding="utf-8",
+    )
+    assert main(["verify", str(recipe), str(path), "--units", "inch"]) == 1
+    assert "; move the cam in its file until its shaft is there" in capsys.readouterr().out
+
+
+@pytest.mark.parametrize("text", ["0.3xx", "5 degrees", "1e", ""])
+def test_what_is_no_length(text: str, capsys: pytest.CaptureFixture[str]) -> None:
+    with pytest.raises(SystemExit):
+        main(["follow", "cam.dxf", "--roller", text])
+    assert "a length in mm or with its unit is expected, such as 9.525 or 0.375in, not" in capsys.readouterr().err
 
 
 def test_what_is_passed_over_is_told_and_other_cams_by_their_places(tmp_path: Path) -> None:

@@ -263,6 +263,7 @@ def test_the_shaft_stands_where_the_call_says(tmp_path: Path) -> None:
         judged_by_recipe(followed)
 
 
+@pytest.mark.costly("all laws are tried on each stroke")
 @pytest.mark.thin(3)
 @pytest.mark.parametrize("name", ["my cam", "Nocken-ä", "x.rejected"])
 def test_a_page_is_of_a_file_of_any_name(drawings: dict[str, Path], tmp_path: Path, name: str, capsys) -> None:
@@ -289,6 +290,7 @@ def test_what_is_no_file_says_what_it_is(tmp_path: Path) -> None:
             camgeo.follow(tmp_path / f"{name}.dxf", roller=8.0)
 
 
+@pytest.mark.costly("all laws are tried on each stroke")
 @pytest.mark.thin(2)
 @pytest.mark.parametrize("name", few([*FOLLOWERS], 2))
 def test_its_recipe_makes_the_file_again(drawings: dict[str, Path], tmp_path: Path, name: str, capsys) -> None:
@@ -327,6 +329,7 @@ OPENINGS: dict[str, tuple[list[list[tuple[float, float, float]]], int, float | N
 }
 
 
+@pytest.mark.costly("all laws are tried on each stroke")
 @pytest.mark.thin(3)
 @pytest.mark.parametrize("name", OPENINGS)
 def test_openings_are_passed_over_and_said(drawings: dict[str, Path], tmp_path: Path, name: str) -> None:
@@ -535,6 +538,7 @@ def test_a_recipe_has_the_name_of_one(name: str, capsys) -> None:
     assert "a file whose name ends in .yaml is expected" in capsys.readouterr().err
 
 
+@pytest.mark.costly("all laws are tried on each stroke")
 @pytest.mark.parametrize(
     ("files", "message"),
     [

@@ -97,7 +97,11 @@ def test_the_travel_at_which_a_knife_edge_on_an_arm_has_its_way() -> None:
     assert "roller" not in told
     (longer,) = re.search(r"lengthen the motion ([\d.]+) times", told).groups()
     for by, serves in ((float(longer), True), (0.99 * float(longer), False)):
-        stretched = re.sub(r"(over|dwell): (\d+)", lambda m, by=by: f"{m[1]}: {float(m[2]) * by}", text)
+
+        def scaled(found: re.Match[str], by: float = by) -> str:
+            return f"{found[1]}: {float(found[2]) * by}"
+
+        stretched = re.sub(r"(over|dwell): (\d+)", scaled, text)
         if serves:
             design_of(stretched)
         else:

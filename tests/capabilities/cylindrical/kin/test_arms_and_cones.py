@@ -9,8 +9,8 @@ import math
 import numpy as np
 import pytest
 from capabilities.cylindrical.kin.drums import Arm, Drum, Motion, distances, replace
+from capabilities.cylindrical.kin.figures import pressure_angles
 
-from kin.cylindrical.figures import pressure_angles
 from kin.cylindrical.frame import contact_angles, flank_points, on_cylinder, regularity, relative_curvature
 
 SWING = math.radians(30.0)

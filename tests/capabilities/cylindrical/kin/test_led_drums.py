@@ -1,6 +1,6 @@
 """Drums whose roller is a cone, on an arm or beside the axis, judged: against brute force by positions, with faults.
 
-Holds: kin.cylindrical.led_gauge, kin.cylindrical.guide.
+Holds: kin.cylindrical.led_gauge, kin.cylindrical.guide, kin.cylindrical.play.
 """
 
 import functools
@@ -26,13 +26,14 @@ from capabilities.cylindrical.kin.drums import (
     replace,
     resting,
 )
+from capabilities.cylindrical.kin.figures import forces, pressure_angles, rib_thickness, undercut
 
 from kin.cylindrical.development import judged_line
-from kin.cylindrical.figures import exact_play, forces, pressure_angles, rib_thickness, undercut
 from kin.cylindrical.frame import flank_points
 from kin.cylindrical.gauge import gauges_of
 from kin.cylindrical.intent import Developed, Limits
 from kin.cylindrical.judge import judge_mesh, positions
+from kin.cylindrical.play import exact_play
 from kin.cylindrical.volume import exact_volume
 from kin.read.mesh.checked import Triangles, checked
 

@@ -4,7 +4,6 @@ Holds: kin.cylindrical.crossings, kin.cylindrical.shoe.
 """
 
 from pathlib import Path
-from types import SimpleNamespace
 
 import manifold3d
 import numpy as np
@@ -24,11 +23,11 @@ from capabilities.cylindrical.kin.screws import (
 
 from kin.cylindrical.crossings import Crossings
 from kin.cylindrical.development import judged_line
-from kin.cylindrical.exact import judge_shell
 from kin.cylindrical.gauge import gauges_of
 from kin.cylindrical.intent import Developed, Limits
 from kin.cylindrical.judge import judge_mesh, positions
 from kin.cylindrical.shoe import shoe_interference
+from kin.cylindrical.smooth import BINS, Crossed, Smooth, look
 from kin.cylindrical.volume import volume_within
 from kin.read.mesh.checked import Triangles, checked
 
@@ -351,9 +350,101 @@ def test_what_several_turns_and_shoes_are_not_judged_for():
             screw(**more).intent()
     with pytest.raises(ValueError, match="a whole number of turns"):
         replace_follower(SCREW, turns=0)
-    verdict = judge_shell(SimpleNamespace(units_mm=1.0), SCREW.intent(), Limits(TOLERANCE), "step")
-    assert not verdict.ok
-    assert "several turns is judged on triangles alone" in verdict.checks[0].detail
+
+
+COLUMNS = 64  # of patches, of a turn; a power of 2 as BINS is
+
+
+def patches(drum, flank, kept, widths=None):
+    """A flank as bicubic patches through 4 by 4 exact places each: columns by number, and shares of their width."""
+    thirds = np.linspace(0.0, 1.0, 4)
+    bernstein = np.stack([(1, 3, 3, 1)[k] * thirds**k * (1.0 - thirds) ** (3 - k) for k in range(4)], axis=1)
+    inverse, width = np.linalg.inv(bernstein), TURN / COLUMNS
+    nets, lines, about = [], [], []
+    for column, share in zip(kept, np.ones(len(kept)) if widths is None else widths, strict=True):
+        for k in range(2):
+            r = drum.floor + (drum.radius - drum.floor) * (k + thirds) / 2
+            phi, z = drum.touched(width * (column + share * thirds), r, *flank[1:])
+            places = np.stack([r * np.cos(phi), r * np.sin(phi), z], axis=-1)
+            nets.append(np.einsum("ai,bj,ijx->abx", inverse, inverse, places))
+            lines.append((k / 2, (k + 1) / 2))
+            about.append(width * column)
+    return Smooth(np.array(nets), np.array(lines), np.array(about))
+
+
+def looked_at(drum, surface, flank=0, carried=()):
+    """What patches of a flank show where it is to carry in some columns."""
+    gauges = gauges_of(drum.intent())
+
+    def carries(radii):
+        assert radii.min() > drum.floor - 1e-3
+        assert radii.max() < drum.radius + 1e-3
+        bins = np.arange(BINS * drum.motion.turns) * COLUMNS // BINS
+        return np.isin(bins, carried)
+
+    return look(gauges[flank], [surface], TOLERANCE, 720 * drum.motion.turns, Crossed(gauges, carries))
+
+
+@pytest.mark.costly("patches over all turns against the rollers of all")
+def test_patches_of_a_flank_stand_in_the_way_of_other_turns_where_it_goes_on():
+    """Depths within the roller of another turn are those of positions; without such patches there are none."""
+    flank, count = SPIRAL.flanks[0], COLUMNS * SPIRAL.motion.turns
+
+    def depth(surface):
+        """Depths (n,), mm, of columns in what rollers take, as seen on the corners of their patches."""
+        corners = surface.nets[:, [0, 0, 3, 3], [0, 3, 0, 3]].reshape(-1, 3)
+        return -outside(SPIRAL, corners).reshape(-1, 8).min(axis=1)
+
+    whole = patches(SPIRAL, flank, range(count))
+    own = depth(whole)
+    clear = np.flatnonzero(np.maximum(np.maximum(own, np.roll(own, 1)), np.roll(own, -1)) < 1e-3)
+    assert 0.2 * count < len(clear) < 0.9 * count
+    seen = looked_at(SPIRAL, whole, carried=clear)
+    # so deep within a roller it is what stands out at the worst angle
+    assert 0.8 * own.max() < seen.proud.value < 1.05 * own.max()
+    kept = looked_at(SPIRAL, patches(SPIRAL, flank, clear), carried=clear)
+    assert kept.proud.value + kept.proud.remainder < 0.1 * TOLERANCE
+    assert kept.least.remainder < TOLERANCE
+    assert np.isfinite(kept.holds[kept.carried]).all()
+    assert 0.8 * len(clear) < kept.carried.mean() * count < 1.2 * len(clear)
+    # a patch that goes on until its outer corner is 0.02 mm within a roller
+    first = next(k for k in clear if k + 1 not in clear)
+    while depth(patches(SPIRAL, flank, [first]))[0] < 0.02:
+        first += 1
+    low, high = 0.0, 1.0
+    for _ in range(40):
+        middle = 0.5 * (low + high)
+        low, high = (low, middle) if depth(patches(SPIRAL, flank, [first], [middle]))[0] > 0.02 else (middle, high)
+    more = patches(SPIRAL, flank, [*clear, first], [*np.ones(len(clear)), high])
+    beyond = looked_at(SPIRAL, more, carried=clear).proud
+    assert beyond.value == pytest.approx(0.02, abs=2e-4)
+    assert beyond.remainder < 0.1 * TOLERANCE
+
+
+@pytest.mark.costly("patches over all turns against the rollers of all")
+def test_a_wall_that_is_missing_where_it_is_to_carry_leaves_the_roller_loose():
+    clear = np.arange(5, 15)
+    upper = looked_at(SPIRAL, patches(SPIRAL, SPIRAL.flanks[1], clear), 1, carried=clear)
+    assert upper.least.remainder < TOLERANCE
+    lost = looked_at(SPIRAL, patches(SPIRAL, SPIRAL.flanks[1], np.delete(clear, 4)), 1, carried=clear)
+    assert np.isinf(lost.least.remainder)
+    # a turn on nothing carries
+    elsewhere = looked_at(SPIRAL, patches(SPIRAL, SPIRAL.flanks[1], clear), 1, carried=clear + COLUMNS)
+    assert np.isinf(elsewhere.least.remainder)
+    nowhere = looked_at(SPIRAL, patches(SPIRAL, SPIRAL.flanks[1], clear), 1)
+    assert not nowhere.carried.any()
+
+
+def test_a_flank_carries_on_cylinders_beside_crossings():
+    """It carries on them where it does anywhere, and on none that its roller does not reach."""
+    drum = SPIRAL.intent()
+    gauge = gauges_of(drum)[0]
+    crossings, count = Crossings(drum, gauges_of(drum), TOLERANCE), 360 * SPIRAL.motion.turns
+    every = crossings.carried(gauge, count)
+    some = crossings.carried(gauge, count, np.array([25.0, 27.0]))
+    assert 0.2 < some.mean() <= every.mean() < 1.0
+    assert not (some & ~np.roll(every, 1) & ~every & ~np.roll(every, -1)).any()
+    assert not crossings.carried(gauge, count, np.array([22.9])).any()  # within the roller's inner end
 
 
 def replace_follower(drum, **more):

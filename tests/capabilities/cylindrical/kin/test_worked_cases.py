@@ -9,8 +9,7 @@ import math
 import numpy as np
 import pytest
 from capabilities.cylindrical.kin.drums import Drum, Groove, Motion, Rib, replace
-
-from kin.cylindrical.figures import (
+from capabilities.cylindrical.kin.figures import (
     forces,
     least_regularity,
     lost_alone,
@@ -21,6 +20,7 @@ from kin.cylindrical.figures import (
     slopes,
     undercut,
 )
+
 from kin.cylindrical.follower import DrumFollower
 from kin.cylindrical.frame import contact_angles, flank_points, on_cylinder, regularity, relative_curvature
 from kin.cylindrical.gauge import gauges_of

@@ -1,0 +1,77 @@
+"""An indexing cam as bodies to be drawn: seen along the turret's axis, the cam, and the turret that it advances."""
+
+from __future__ import annotations
+
+import math
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from camgeo.capabilities.indexing.ribs import RISE, far, layers, near, rims
+from camgeo.curve.ring import Ring
+from camgeo.report.page.scene import STEPS, FilledShape, MovingBody, Scene, pivot, poses, still
+from kin.numeric.angles import TURN
+
+if TYPE_CHECKING:
+    from camgeo.capabilities.indexing.design import IndexDesign
+    from camgeo.capabilities.indexing.ribs import Layer
+    from kin.numeric.arrays import Array
+
+CAM = "indexer"  # the kind of the body that a page draws anew at each angle
+JOINT = 0.016  # of the cam's diameter and length together: size of a joint
+
+
+def scene(design: IndexDesign, step: int = 0, of: list[Layer] | None = None) -> Scene:
+    """The cam as it stands at a step of the turn, and its turret over the turn, in the recipe's unit.
+
+    `of` are its layers, by default as they are made here.
+    """
+    recipe = design.recipe
+    of = of or layers(design)
+    theta = np.linspace(0.0, TURN, STEPS + 1)
+    turret = recipe.turret.drawn(recipe.roller, recipe.stops, recipe.sense)
+    size = JOINT * (2.0 * float(of[-1].radius.max()) + recipe.length)
+    psi = recipe.start + design.law.derivatives(theta, 0)[0]
+    turned = poses(*turret.centre, psi if turret.way > 0 else math.pi - psi)
+    body = tuple(FilledShape("follower", (ring,), "turret") for ring in turret.body)
+    rollers = tuple(FilledShape("roller", (ring,), "roller") for ring in turret.rollers)
+    bodies = (
+        MovingBody("cam", CAM, tuple(cam_shapes(design, of, faced(design, float(theta[step])))), still()),
+        MovingBody("turret", "follower", (*body, FilledShape("hub", (turret.rim,))), turned),
+        MovingBody("rollers", "follower", rollers, turned),
+        pivot("pivot", *turret.centre, size, "T"),
+    )
+    way = "clockwise" if recipe.rotation == "cw" else "counter-clockwise"
+    note = f"seen along the turret's axis; the cam turns {way}, seen from above"
+    return Scene(bodies, note).scaled(1.0 / recipe.mm)
+
+
+def faced(design: IndexDesign, theta: float) -> float:
+    """Polar angle, rad, of the cam as it is computed, that faces the viewer at a shaft angle, rad."""
+    return theta + design.recipe.sense * design.recipe.turret.facing
+
+
+def shares(of: list[Layer]) -> list[float]:
+    """Share of each layer's distance from the cam's axis that the floor has where the cam is thinnest."""
+    core = float(of[0].radius.min())
+    return [core / float(each.radius.min()) for each in of]
+
+
+def cam_shapes(design: IndexDesign, of: list[Layer], turn: float) -> list[FilledShape]:
+    """Shapes of the cam from the hindmost to the foremost, with the polar angle `turn`, rad, towards the viewer."""
+    sense = design.recipe.sense
+    behind = [far(each, turn, sense, share) for each, share in zip(of, shares(of), strict=True)]
+    core = FilledShape("fixed", (Ring.through(_core(of[0])),), "floor of the track")
+    walls = [_shape("wall", outlines) for outlines in reversed(behind)]
+    walls += [core, *(_shape("wall", near(each, turn, sense)) for each in of[:-1])]
+    return [*walls, _shape("wall", rims(of, turn, sense)), _shape("metal", near(of[-1], turn, sense), "rib")]
+
+
+def _core(of: Layer) -> Array:
+    """Outline (n, 2) of the body within a layer."""
+    half = np.column_stack([of.radius, np.linspace(0.0, of.length, RISE + 1)])
+    return np.concatenate([half, half[::-1] * (-1.0, 1.0)])
+
+
+def _shape(role: str, outlines: list[Array], name: str = "") -> FilledShape:
+    return FilledShape(role, tuple(Ring.through(outline) for outline in outlines), name)
