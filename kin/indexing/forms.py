@@ -100,6 +100,9 @@ class Form(Protocol):
     def depth_at(self, place: float) -> float:
         """Depth of the layer that a roller reaches at a place along it, if it is level and on a radius of the cam."""
 
+    def deepest(self, place: float, radius: float) -> float:
+        """Depth of the deepest place of the flat end of a roller of a radius, at a place along it."""
+
     def bent(self, ways: Array, places: Array) -> tuple[Array, Array]:
         """How far the depth may be above and below that of a plane, mm (t,), on triangles.
 
@@ -243,6 +246,10 @@ class Barrel:
         """Below the blank's radius."""
         return self.radius - place
 
+    def deepest(self, place: float, _radius: float) -> float:
+        """A flat end is nearest to the cam's axis where a radius of the cam meets it."""
+        return self.depth_at(place)
+
     def bent(self, ways: Array, places: Array) -> tuple[Array, Array]:
         """Across the axis chords run below the cylinder."""
         return 0.5 * spread(_round(ways, places)[0]), np.zeros(len(places))
@@ -379,6 +386,10 @@ class Globoid:
     def depth_at(self, place: float) -> float:
         """Beyond the throat's radius."""
         return place - self.radius
+
+    def deepest(self, place: float, radius: float) -> float:
+        """The rim of a flat end is farther from the turret's axis than its middle."""
+        return math.hypot(place, radius) - self.radius
 
     def bent(self, ways: Array, places: Array) -> tuple[Array, Array]:
         """Round the cam's axis chords run deeper, along the throat they run outside the torus."""
