@@ -136,19 +136,18 @@ def test_a_cam_that_is_a_little_another_is_refused(text: str, change: tuple[str,
 @pytest.mark.slow
 @FORMS
 def test_walls_cut_radially_are_refused(text: str, monkeypatch: pytest.MonkeyPatch) -> None:
-    """Each place of a flank as high and as far round as where the roller touches the blank at that shaft angle."""
+    """Each place between floor and blank as high and as far round as where the roller touches the blank at that shaft angle."""
     sheet_of = solid.sheet_of
 
     def radial(flank: Flank, tolerance: float, wide: tuple[float, float]) -> Sheet:
         sheet = sheet_of(flank, tolerance, wide)
         theta = sheet.phi.copy()
-        pose = flank.pose(theta)
         for _ in range(80):
             pose = flank.pose(theta)
             theta += 0.5 * np.nan_to_num(sheet.phi - flank.contact(theta, pose, flank.reached(pose, sheet.w)).phi)
         edge = flank.on(theta, flank.form.blank)
         inside = np.ones(theta.size, dtype=bool)
-        inside[np.concatenate(sheet.ends)] = False
+        inside[np.concatenate([*sheet.ends, sheet.floor, sheet.blank])] = False
         z = flank.form.points(edge.phi, edge.h, sheet.w)[:, 2]
         phi, h, z = (
             np.where(inside, one, two) for one, two in ((edge.phi, sheet.phi), (edge.h, sheet.h), (z, sheet.z))
