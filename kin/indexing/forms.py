@@ -98,6 +98,9 @@ class Form(Protocol):
     def depth_at(self, place: float) -> float:
         """Depth of the layer that a roller reaches at a place along it, if it is level and on a radius of the cam."""
 
+    def deepest(self, place: float, radius: float) -> float:
+        """Depth of the deepest place of the flat end of a roller of a radius, at a place along it."""
+
     def bent(self, ways: Array, places: Array) -> tuple[Array, Array]:
         """How far the depth may be above and below that of a plane, mm (t,), on triangles.
 
@@ -235,6 +238,10 @@ class Barrel:
         """Below the blank's radius."""
         return self.radius - place
 
+    def deepest(self, place: float, _radius: float) -> float:
+        """A flat end is nearest to the cam's axis where a radius of the cam meets it."""
+        return self.depth_at(place)
+
     def bent(self, ways: Array, places: Array) -> tuple[Array, Array]:
         """Depth above that of a plane alone: chords across the axis run below the cylinder."""
         return 0.5 * spread(_round(ways, places)[0]), np.zeros(len(places))
@@ -367,6 +374,10 @@ class Globoid:
     def depth_at(self, place: float) -> float:
         """Beyond the throat's radius."""
         return place - self.radius
+
+    def deepest(self, place: float, radius: float) -> float:
+        """The rim of a flat end is farther from the turret's axis than its middle."""
+        return math.hypot(place, radius) - self.radius
 
     def bent(self, ways: Array, places: Array) -> tuple[Array, Array]:
         """Depth above and below that of a plane: chords round the cam's axis run deeper, those along the throat not."""

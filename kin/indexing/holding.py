@@ -28,7 +28,7 @@ if TYPE_CHECKING:
 
 SHARE = 0.05  # of the tolerance: what angles between two of the grid may cost
 LEAST, MOST = 1024, 65_536  # angles of the grid
-LAYERS = (0.137, 0.382, 0.618, 0.881)  # of the length of a roller, at which flanks are asked
+LAYERS = (0.02, 0.14, 0.26, 0.38, 0.5, 0.62, 0.74, 0.86, 0.98)  # of the length of a roller, at which flanks are asked
 NEAR = 1e-3  # mm: a roller that touches so near the blank or the floor touches a flank
 EVEN = 1e-6  # of a step: so near its middle an angle counts as there
 MEETINGS = 30  # steps to the place of a roller that touches a layer
@@ -72,7 +72,8 @@ def _places(
 ) -> tuple[Array, Indices]:
     """Places (m, 3) in a layer and the numbers (m,) of the steps about whose middle a roller touches them."""
     intent, (share, width) = rollers.intent, about
-    one, other = (intent.form.depth_at(place) for place in (intent.inner, intent.outer))
+    # beside a roller its flanks lie where the rim of its end would be
+    one, other = (intent.form.deepest(place, intent.roller) for place in (intent.inner, intent.outer))
     level = one + share * (other - one)
     corners = body.corners[which]
     depth = body.depth[corners] - level

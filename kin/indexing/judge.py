@@ -176,7 +176,8 @@ class _Judged:
                 checks.append(at_most(name, worst, tolerance, "mm", detail=detail, slack=self.slack))
 
         check(BLANK, off[BLANK], f"from a radius of {length_words(intent.form.radius)} {UNIT}")
-        room = intent.form.depth - max(intent.form.depth_at(place) for place in (intent.inner, intent.outer))
+        ends = (intent.form.deepest(place, intent.roller) for place in (intent.inner, intent.outer))
+        room = intent.form.depth - max(ends)
         told = f"the roller ends {length_words(abs(room), '.3g')} {UNIT} {'above it' if room > 0.0 else 'below it'}"
         check(FLOOR, off[FLOOR], f"from a depth of {length_words(intent.form.depth)} {UNIT} below the blank; {told}")
         checks[-1] = replace(checks[-1], ok=checks[-1].ok and room > 0.0)
@@ -249,7 +250,10 @@ def contour_check(out: Peak, within: Peak, tolerance: float, slack: float) -> tu
     words = " and ".join(
         f"{length_words(max(peak.value, 0.0), '.3g')} {UNIT} {way}" for peak, way in ((out, "proud"), (within, "bare"))
     )
-    told = f"true within {length_words(max(out.remainder, within.remainder), '.2g')} {UNIT}"
+    left = max(out.remainder, within.remainder)
+    told = (
+        f"true within {length_words(left, '.2g')} {UNIT}" if math.isfinite(left) else "other places were not measured"
+    )
     check = at_most(CONTOUR, worst, tolerance, "mm", detail=f"{words} of the exact flank; {told}", slack=slack)
     at = out.at if out.value >= within.value else within.at
     return replace(check, at=degrees(at) if math.isfinite(at) else None), worst
@@ -301,5 +305,8 @@ def play_of(job: _Judged, lower: Held, upper: Held) -> tuple[Play, Check]:
 
 
 def _assured(value: float, remainder: float, tolerance: float) -> float:
-    """A value found, or its bound where the proof leaves more open than a share of the tolerance, all in one unit."""
-    return value if remainder <= OPEN * tolerance else value + remainder
+    """A value found, or its bound where the proof leaves more open than a share of the tolerance, all in one unit.
+
+    A value above the tolerance is enough by itself.
+    """
+    return value if value > tolerance or remainder <= OPEN * tolerance else value + remainder

@@ -11,7 +11,8 @@ from camgeo.capabilities.indexing.keys import LENGTH, RIB
 from camgeo.measures.placed import figure_check, limits_and_wall
 from camgeo.measures.rule_remark import RuleRemark
 from camgeo.recipe.figures import LEAST_WALL, PRESSURE_ANGLE
-from kin.numeric.check import Check, failed
+from kin.numeric.check import Check
+from kin.numeric.records import replace
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -20,6 +21,7 @@ if TYPE_CHECKING:
     from camgeo.measures.placed import Figure
 
 STEEP = 45.0  # degrees, by rule of thumb for a follower that swings
+SHORTEST = 0.15  # of the length of a roller, on which one has to bear at least: the judge asks in layers
 ROUNDING = 1e-9  # mm: a wall that is less by no more holds
 
 
@@ -27,12 +29,13 @@ def design_checks(design: IndexDesign, figures: Sequence[Figure]) -> list[Check]
     """Checks that need no file; a figure that nothing limits is reported without a limit."""
     known = {figure.name: figure for figure in figures}
     checks = [figure_check(PRESSURE_ANGLE, known[PRESSURE_ANGLE], None, "at_most", at_unit="deg")]
-    length = figure_check(LENGTH, known[LENGTH], 0.0, "at_least", at_unit="deg")
-    if known[LENGTH].value > 0.0:
-        checks.append(length)
-    else:
-        why = "no roller bears on a flank there, and the turret is free: give more stops, or a longer cam"
-        checks.append(Check(**{**vars(failed(LENGTH, why, unit="mm", limit=0.0)), "at": length.at}))
+    roller = design.recipe.roller
+    length = figure_check(LENGTH, known[LENGTH], SHORTEST * (roller.outer - roller.inner), "at_least", at_unit="deg")
+    if not length.ok:
+        free = "no roller bears on a flank there, and the turret is free"
+        why = free if not known[LENGTH].value > 0.0 else "a roller bears on a flank with little more than its rim there"
+        length = replace(length, detail=f"{why}: give more stops, or a longer cam")
+    checks.append(length)
     checks.append(figure_check(RIB, known[RIB], 0.0, "at_least", at_unit="deg"))
     wall, where = min(walls(design))
     least = design.recipe.part.wall

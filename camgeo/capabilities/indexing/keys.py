@@ -73,7 +73,11 @@ TURRET = Field(
                 "where a roller begins to bear: of a barrel from its axis, of a globoid from the turret's",
                 default="a barrel's floor and 0.5 mm; radius of a globoid's throat",
             ),
-            length("to", "where it ends", default="radius of a barrel's blank; a globoid's floor less 0.5 mm"),
+            length(
+                "to",
+                "where it ends",
+                default="radius of a barrel's blank; where the end of a globoid's roller stands 0.5 mm off the floor",
+            ),
             Field(
                 "height",
                 Kind.LENGTH,

@@ -181,8 +181,13 @@ def _ends(cam: Values) -> tuple[float, float]:
         inner, outer = blank - depth + FLOOR_GAP, blank
     else:
         blank = cam["globoid"]["radius"]
-        inner, outer = blank, blank + depth - FLOOR_GAP
+        inner, outer = blank, _reaching(blank + depth - FLOOR_GAP, turret["roller"])
     return turret.get("from", inner), turret.get("to", outer)
+
+
+def _reaching(layer: float, roller: float) -> float:
+    """Distance of a roller's flat end from a globoid's turret, mm, whose rim reaches a layer, mm; 0 where none does."""
+    return math.sqrt(max(layer * layer - roller * roller, 0.0))
 
 
 def _check_roller(values: Values, reader: Reader) -> None:
@@ -192,17 +197,20 @@ def _check_roller(values: Values, reader: Reader) -> None:
     barrel = "barrel" in cam
     blank = cam["barrel" if barrel else "globoid"]["radius"]
     floor = blank - cam["depth"] if barrel else blank + cam["depth"]
+    deepest = floor if barrel else _reaching(floor, turret["roller"])
     if barrel and not begins > floor:
         remedy = f"give more than {_shown(floor, reader)}, or a greater depth"
         reader.fault_at(f"{path}.from", "the roller's end stands on the floor", _shown(begins, reader), remedy)
-    elif not barrel and not ends < floor:
-        remedy = f"give less than {_shown(floor, reader)}, or a greater depth"
-        reader.fault_at(f"{path}.to", "the roller's end stands on the floor", _shown(ends, reader), remedy)
+    elif not barrel and "to" in turret and not ends < deepest:
+        remedy = f"give less than {_less(deepest, reader)}, or a greater depth"
+        problem = "the rim of the roller's end stands on the floor"
+        reader.fault_at(f"{path}.to", problem, _shown(ends, reader), remedy)
     elif not ends > begins or (not begins < blank if barrel else not ends > blank):
         at = next((f"{path}.{key}" for key in ("from", "to") if key in turret), "cam.depth")
-        low, high = min(floor, blank), max(floor, blank)
-        remedy = f"let it bear between {_shown(low, reader)} and {_shown(high, reader)}"
-        remedy = remedy if at != "cam.depth" else f"give more than {_shown(FLOOR_GAP, reader)}"
+        low, high = min(deepest, blank), max(deepest, blank)
+        remedy = f"let it bear between {_shown(low, reader)} and {_less(high, reader)}"
+        rim = 0.0 if barrel else math.hypot(begins, turret["roller"]) - begins
+        remedy = remedy if at != "cam.depth" else f"give more than {_more(FLOOR_GAP + rim, reader)}"
         reader.fault_at(at, "the roller bears nowhere", None, remedy)
     half = math.pi / turret["stops"]
     if barrel:

@@ -68,11 +68,18 @@ REFUSED = [
     ),
     (BARREL, ("roller: 9", "roller: 9, from: 37.1"), None),
     (BARREL, ("roller: 9", "roller: 9, from: 40, to: 39"), "bears nowhere; let it bear between 37 mm and 50 mm"),
-    (GLOBOID, ("roller: 8", "roller: 8, to: 62.5"), "stands on the floor, given 62.5 mm; give less than 62.5 mm"),
-    (GLOBOID, ("roller: 8", "roller: 8, to: 62.4"), None),
-    (GLOBOID, ("roller: 8", "roller: 8, to: 48"), "bears nowhere; let it bear between 49 mm and 62.5 mm"),
+    # 62.5^2 = 61.98588^2 + 8^2, and 49^2 + 8^2 = 49.64877^2
+    (
+        GLOBOID,
+        ("roller: 8", "roller: 8, to: 62"),
+        "the rim of the roller's end stands on the floor, given 62 mm; give less than 61.985 mm, or a greater depth",
+    ),
+    (GLOBOID, ("roller: 8", "roller: 8, to: 61.985"), None),
+    (GLOBOID, ("roller: 8", "roller: 8, to: 48"), "bears nowhere; let it bear between 49 mm and 61.985 mm"),
+    (GLOBOID, ("depth: 13.5", "depth: 1.1"), "cam.depth: the roller bears nowhere; give more than 1.1488 mm"),
+    (GLOBOID, ("depth: 13.5", "depth: 1.5"), None),
     (BARREL, ("depth: 13", "depth: 0.4"), "cam.depth: the roller bears nowhere; give more than 0.5 mm"),
-    (BARREL, ("depth: 13", "depth: 0.6"), None),
+    (BARREL, ("depth: 13", "depth: 0.9"), None),
     (BARREL, ("depth: 13", "depth: 45"), "given 45 mm; give less than 41 mm, or a smaller roller"),
     (
         changed(BARREL, ("radius: 50", "radius: 9"), ("depth: 13", "depth: 2")),
@@ -235,7 +242,9 @@ def test_defaults_and_units() -> None:
     assert recipe_of(changed(BARREL, ("roller: 9", "roller: 9, side: leading"))).turret.sizes["offset"] < 0.0
     assert recipe_of(changed(BARREL, ("roller: 9", "roller: 9, preload: 0.01"))).clearance == pytest.approx(-0.01)
     globoid = recipe_of(GLOBOID)
-    assert (globoid.roller.inner, globoid.roller.outer, globoid.layers) == (49.0, 62.0, (49.0, 62.5))
+    assert (globoid.roller.inner, globoid.layers) == (49.0, (49.0, 62.5))
+    # the rim of its flat end stands half a millimetre off the floor
+    assert math.hypot(globoid.roller.outer, 8.0) == pytest.approx(62.0)
     inch = recipe_of(
         "units: inch\n"
         + changed(
@@ -249,7 +258,7 @@ def test_defaults_and_units() -> None:
         )
     )
     assert inch.roller.inner == pytest.approx(50.8)
-    assert inch.roller.outer == pytest.approx(50.8 + 12.7 - 0.5)
+    assert math.hypot(inch.roller.outer, 8.0) == pytest.approx(50.8 + 12.7 - 0.5)
 
 
 def test_of_a_slip_in_the_kind_no_other_key_is_at_fault() -> None:
