@@ -1,7 +1,7 @@
 """Flanks of indexing cams against worked cases, and against rollers at all angles by positions alone.
 
 Holds: camgeo.capabilities.indexing.flank, camgeo.capabilities.indexing.forms, camgeo.capabilities.indexing.undercut,
-camgeo.capabilities.indexing.spans, camgeo.capabilities.indexing.bends, camgeo.fit.facets.
+camgeo.capabilities.indexing.spans, camgeo.capabilities.indexing.bends.
 """
 
 from __future__ import annotations

@@ -2,7 +2,7 @@
 
 Holds: camgeo.capabilities.indexing.reading, camgeo.capabilities.indexing.keys,
 camgeo.capabilities.indexing.index_recipe, camgeo.capabilities.indexing.soundness,
-camgeo.capabilities.indexing.exact, camgeo.recipe.radii.
+camgeo.capabilities.indexing.exact.
 """
 
 from __future__ import annotations
