@@ -66,7 +66,7 @@ def band(x: Array, y: Array, lower: Indices, upper: Indices) -> Indices:
 
     def onwards(a: int, b: int, c: int) -> bool:
         ahead = (along[b] - along[a]) * (along[c] - along[b])
-        return ahead + (up[b] - up[a]) * (up[c] - up[b]) > 0.0
+        return bool(ahead + (up[b] - up[a]) * (up[c] - up[b]) > 0.0)
 
     def cut(least: float, *, start: bool) -> None:
         while len(front) > 2:

@@ -136,7 +136,7 @@ def test_a_cam_that_is_a_little_another_is_refused(text: str, change: tuple[str,
 @pytest.mark.slow
 @FORMS
 def test_walls_cut_radially_are_refused(text: str, monkeypatch: pytest.MonkeyPatch) -> None:
-    """Each place between floor and blank as high and as far round as where the roller touches the blank at that shaft angle."""
+    """Each place between floor and blank stands as the roller touches the blank at that shaft angle."""
     sheet_of = solid.sheet_of
 
     def radial(flank: Flank, tolerance: float, wide: tuple[float, float]) -> Sheet:
