@@ -66,7 +66,7 @@ WORKED_GLOBOID = Globoid(49.0, 14.0, 90.0, 0.0, 60.0)
 )
 def test_a_barrel_as_worked_by_hand(place: tuple[float, float, int], wanted: tuple[float, ...]) -> None:
     (theta, rho, side), (r, phi, angle, z) = place, wanted
-    flank = Flank(WORKED_BARREL, Cycloids(60.0, 150.0), math.radians(-30.0), 9.0, side)  # type: ignore[arg-type]
+    flank = Flank(WORKED_BARREL, Cycloids(60.0, 150.0), math.radians(-30.0), 9.0, side)
     at = np.array([math.radians(theta)])
     found = flank.along(at, np.array([rho]))
     assert found.w[0] == pytest.approx(r, abs=1e-10)
@@ -91,7 +91,7 @@ def test_a_barrel_as_worked_by_hand(place: tuple[float, float, int], wanted: tup
 )
 def test_a_globoid_as_worked_by_hand(place: tuple[float, float, int], wanted: tuple[float, ...]) -> None:
     (theta, rho, side), (r, phi, z) = place, wanted
-    flank = Flank(WORKED_GLOBOID, Cycloids(45.0, 120.0), math.radians(-22.5), 8.0, side)  # type: ignore[arg-type]
+    flank = Flank(WORKED_GLOBOID, Cycloids(45.0, 120.0), math.radians(-22.5), 8.0, side)
     at = np.array([math.radians(theta)])
     found = flank.along(at, np.array([rho]))
     point = WORKED_GLOBOID.points(found.phi, found.h, found.w)[0]

@@ -21,6 +21,7 @@ from capabilities.indexing.made_indexers import BARREL, GLOBOID, changed, random
 from camgeo.capabilities.indexing import solid
 from camgeo.capabilities.indexing.checks_of import design_checks
 from camgeo.capabilities.indexing.figures import figures_of
+from camgeo.capabilities.indexing.sheet import sheet_of
 from camgeo.capabilities.indexing.verdicts import intended
 from camgeo.cli.main import main
 from camgeo.output.extension import numbers_of
@@ -136,8 +137,7 @@ def test_a_cam_that_is_a_little_another_is_refused(text: str, change: tuple[str,
 @pytest.mark.slow
 @FORMS
 def test_walls_cut_radially_are_refused(text: str, monkeypatch: pytest.MonkeyPatch) -> None:
-    """Each place between floor and blank as high, and as far round, as the place of the blank at that shaft angle."""
-    sheet_of = solid.sheet_of
+    """Each place between floor and blank stands as the roller touches the blank at that shaft angle."""
 
     def radial(flank: Flank, tolerance: float, wide: tuple[float, float]) -> Sheet:
         sheet = sheet_of(flank, tolerance, wide)
