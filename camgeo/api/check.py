@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterator, Mapping
 from dataclasses import asdict
 from typing import TYPE_CHECKING, Any
@@ -13,7 +14,10 @@ from kin.numeric import check as judge
 from kin.numeric.records import dataclass
 
 if TYPE_CHECKING:
+    from collections.abc import Iterable
+
     from camgeo.measures.measured import Measured
+    from camgeo.measures.placed import Figure as Placed
     from camgeo.recipe.recipe import Order, Recipe
 
 
@@ -111,6 +115,17 @@ class Figures(Mapping[str, Figure]):
     """Figures of a design by name: a read-only mapping that can be pickled."""
 
     _by_name: dict[str, Figure]
+
+    @staticmethod
+    def placed(recipe: Order, figures: Iterable[Placed], at_unit: str) -> Figures:
+        """Figures in the recipe's units, with places in `at_unit`; one that has no value is `nowhere`."""
+        found = {}
+        for figure in figures:
+            value, unit = in_units(recipe, figure.value, figure.unit)
+            finite = value is not None and math.isfinite(value)
+            detail, over = "" if finite else "nowhere", "" if figure.at is None else at_unit
+            found[figure.name] = Figure(value if finite else None, unit, figure.at, detail, over)
+        return Figures(found)
 
     def __getitem__(self, name: str) -> Figure:
         return self._by_name[name]

@@ -14,7 +14,7 @@ if TYPE_CHECKING:
     from camgeo.files.precision import Precision
     from camgeo.files.triangulate import Triangles
     from camgeo.fit.bound import Bound
-    from kin.numeric.arrays import Array
+    from kin.numeric.arrays import Array, Indices
 
 
 @dataclass(frozen=True, eq=False)
@@ -35,6 +35,38 @@ class Mesh:
     def volume(self) -> float:
         """Enclosed volume, mm^3, by the divergence theorem."""
         return float(np.sum(self.points[self.triangles[:, 0]] * self.area_vectors)) / 6.0
+
+
+class Building:
+    """Points and triangles of a body under construction, with the greatest shift of a point by rounding, mm."""
+
+    def __init__(self, precision: Precision) -> None:
+        """Points are rounded to the `precision` of a file."""
+        self.precision = precision
+        self.points: list[Array] = []
+        self.triangles: list[Triangles] = []
+        self.count, self.moved = 0, 0.0
+
+    def add(self, points: Array) -> Indices:
+        """Numbers of new points (n, 3), rounded as the file has them."""
+        if not len(points):
+            return np.zeros(0, dtype=np.intp)
+        rounded, moved = self.precision.rounded(points)
+        self.moved = max(self.moved, moved)
+        self.points.append(rounded)
+        self.count += len(points)
+        return np.arange(self.count - len(points), self.count)
+
+    def mesh(self, noun: str, *, mirrored: bool) -> Mesh:
+        """The mesh, mirrored (y -> -y) if so; raises RegionError, by the body's `noun`, for a triangle without area."""
+        points, triangles = np.concatenate(self.points), np.concatenate(self.triangles)
+        if mirrored:
+            points = points * np.array([1.0, -1.0, 1.0]) + 0.0
+            triangles = triangles[:, ::-1]
+        mesh = Mesh(points, triangles)
+        if not bool(mesh.area_vectors.any(axis=1).all()):
+            raise RegionError(f"a triangle of the {noun} has no area in {self.precision.name}")
+        return mesh
 
 
 @dataclass(frozen=True, eq=False)

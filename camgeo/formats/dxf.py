@@ -239,6 +239,16 @@ def _draw_outline(space: Modelspace, outline: Outline, mm: float, layer: str) ->
     return entity, box
 
 
+def draw_line(space: Modelspace, layer: str, colour: int, points: Array) -> Box:
+    """Add an open line (n, 2), in drawing units, on a layer that may be new, of an AutoCAD colour; its extremes."""
+    layers = space.doc.layers if space.doc is not None else None
+    if layers is not None and layer not in layers:
+        layers.add(layer, color=colour)
+    entity = space.add_lwpolyline([], dxfattribs={"layer": layer})
+    entity.lwpoints.values = np.column_stack((points, np.zeros((len(points), 3))))
+    return (*points.min(axis=0).tolist(), *points.max(axis=0).tolist())
+
+
 def _draw_path(space: Modelspace, points: Array) -> tuple[DXFGraphic, Box]:
     """Add an open line for reference, in drawing units; returns the entity and its extremes."""
     (x0, y0), (x1, y1) = points.min(axis=0).tolist(), points.max(axis=0).tolist()

@@ -9,6 +9,7 @@ import numpy as np
 
 from camgeo.checks.declared import LIMIT
 from camgeo.measures.units import in_pounds, in_units
+from camgeo.recipe.figures import LEAST_WALL
 from kin.numeric.check import Check
 
 if TYPE_CHECKING:
@@ -75,6 +76,19 @@ def limit_checks(
                 )
                 found.append(Check(**{**vars(check), "surface": surface}))
     return found
+
+
+def limits_and_wall(
+    bounds: Sequence[Bound],
+    figures: Sequence[Figure],
+    checks: Sequence[Check],
+    at_unit: str,
+    surfaces: Sequence[str] = ("",),
+) -> list[Check]:
+    """Checks of the figures that a recipe limits, and of the least wall, which is measured by one of `checks`."""
+    measured = (check.value for check in checks if check.name == LEAST_WALL)
+    walls = [Figure(LEAST_WALL, value, "mm") for value in measured if value is not None]
+    return limit_checks(bounds, [*figures, *walls[:1]], at_unit, surfaces)
 
 
 def figure_entry(recipe: Order, figure: Figure, per: float) -> dict[str, Any]:

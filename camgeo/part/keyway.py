@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from camgeo.part.bore import diameter_of
+from camgeo.part.bore import check_bore, diameter_of
 from camgeo.part.din6885 import LEAST, MOST, key_for
 from camgeo.part.feature import Feature, angle, check_below, size_words
 from camgeo.part.iso286 import KEYWAYS, deviations
@@ -119,3 +119,14 @@ FEATURE = Feature(
     bore=_bore,
     metric=_metric,
 )
+
+
+def check_round(part: Values, reader: Reader) -> None:
+    """Note faults of the bore of a part whose one feature is a keyway, and of the keyway."""
+    name = FEATURE.name
+    check_bore(part, reader, [name] if name in part else [])
+    if name in part:
+        for key, why in FEATURE.needs:
+            if key not in part:
+                reader.fault_at(f"part.{name}", f"needs part.{key}: {why}", None, f"give part.{key}")
+        FEATURE.check(part, reader)

@@ -35,7 +35,7 @@ from kin.numeric.errors import UnsettledError
 from kin.numeric.lengths import UNIT, amount_words, length_words
 from kin.numeric.limits import is_loose, limit_of, unlimited
 from kin.numeric.records import dataclass, replace
-from kin.read.checks import count_check, demand_same, units_check, unread_check
+from kin.read.checks import count_check, demand_same, enclosed_check, units_check, unread_check
 from kin.read.errors import ReadError
 from kin.read.files import read_mesh
 from kin.read.formats import format_of
@@ -53,7 +53,7 @@ if TYPE_CHECKING:
     from kin.numeric.arrays import Array, Mask
     from kin.read.mesh.checked import CheckedMesh
 
-WATERTIGHT, MOTION, PLAY, CONTOUR, ENDS, VOLUME = "watertight", "motion", "form-closure", "contour", "ends", "volume"
+WATERTIGHT, MOTION, PLAY, CONTOUR, ENDS = "watertight", "motion", "form-closure", "contour", "ends"
 CROSSINGS, SHOE = "crossings", "shoe"
 OPEN = 0.25  # of the tolerance: what the proof may leave open, and is told
 SLACK = 1e-6  # of a limit that follows from the steepest slope
@@ -404,9 +404,4 @@ def _between(play: Play) -> str:
 
 def volume_check(drum: DrumIntent, gauges: tuple[Gauge, ...], measured: tuple[float, float], tolerance: float) -> Check:
     """Check of a solid's volume, mm^3, by that of its surface within a tolerance, mm; `measured` is with its area."""
-    (expected, remainder), (volume, area) = volume_within(drum, gauges), measured
-    detail = f"{length_words(volume, '.9g', 3)} {UNIT}^3, by the intent {length_words(expected, '.9g', 3)}"
-    if remainder:
-        detail += f", known within {length_words(remainder, '.2g', 3)} {UNIT}^3"
-    off = abs(volume - expected) + remainder
-    return at_most(VOLUME, off, tolerance * area, "mm^3", detail=detail, slack=ROUNDING * expected)
+    return enclosed_check(measured, volume_within(drum, gauges), tolerance)

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from kin.law.bounds import cubic_cells
+from kin.law.bounds import cubic_cells, cubics_between
 from kin.numeric.angles import TURN
 from kin.numeric.records import dataclass, replace
 
@@ -62,12 +62,7 @@ class Lifts:
     @cached_property
     def _cubics(self) -> Array:
         """Coefficients (4, m) of the cubics through value and slope at both ends of each cell."""
-        low, high = self.nodes[:-1], self.nodes[1:]
-        (f, g), (f1, g1) = self.law.derivatives(low, 1, 1), self.law.derivatives(high, 1, -1)
-        h = high - low
-        rise = (f1 - f) / h
-        cubics: Array = np.stack([f, g, (3.0 * rise - 2.0 * g - g1) / h, (g + g1 - 2.0 * rise) / h**2])
-        return cubics
+        return cubics_between(self.law, self.nodes)
 
     def at(self, theta: Array) -> tuple[Array, Array, Array]:
         """Lift, mm, its slope and bend (n,) each, per rad and rad^2, at angles (n,), rad, of any turn."""

@@ -1,10 +1,11 @@
 """How far the surface of a file is from the flanks: out of the metal, proud, and into it, bare; with proofs.
 
-Proud is the depth at which a triangle reaches into what rollers sweep. Seen along a roller's axis it is met at an edge
-first, so that the worst places of edges tell it exactly. Bare is how far a place of the surface is from all rollers at
-all angles. At one angle the distance from an axis is convex, so that over a triangle it is greatest at a corner: the
-corners' distances at any angle bound it. An angle between the worst ones of the corners is taken, and triangles are
-divided until the bound is close to what corners show.
+Proud is the depth to which a triangle reaches into what rollers sweep. Seen along a roller's axis, the deepest place of
+a triangle is on an edge, unless the axis passes through it; that axis is near the edges too. So edges tell it, within
+what their search leaves open. Bare is how far a place of the surface is from all rollers at all angles. At one angle
+the distance from an axis is convex, and over a triangle it is greatest at a corner. So the corners' distances at any
+angle bound it. An angle between the worst ones of the corners is taken, and triangles are divided until the bound is
+close to what corners show.
 """
 
 from __future__ import annotations
@@ -23,9 +24,10 @@ if TYPE_CHECKING:
     from kin.indexing.rollers import Rollers
     from kin.numeric.arrays import Array, Indices, Mask
 
-OPEN = 0.2  # of the tolerance: what the proof may leave open
+OPEN = 0.2  # of the tolerance, or of a greater distance: what the proof may leave open
 PLAIN = 0.5  # of the tolerance: a bound below it need not be closer
 ROUNDS = 24  # of dividing triangles
+FAR, FEW = 10.0, 2  # times the tolerance: a surface found so far off is divided in no more rounds than these
 MOST_PARTS = 2_000_000  # triangles at a time while dividing
 APART = 0.1  # rad: worst angles of a triangle's corners that are farther apart are not of one place of a flank
 
@@ -124,8 +126,9 @@ def bare(rollers: Rollers, body: Body, known: Known, which: Indices) -> Peak:
     value, at = float(known.distance[place]), float(known.worst.theta[place])
     triangles, theta = body.points[corners], known.worst.theta[corners]
     theta = theta[:, :1] + np.remainder(theta - theta[:, :1] + math.pi, TURN) - math.pi
-    bound, goal = value, max(value + OPEN * rollers.tolerance, PLAIN * rollers.tolerance)
-    for turn in range(ROUNDS + 1):
+    bound, goal = value, max(value + OPEN * max(value, rollers.tolerance), PLAIN * rollers.tolerance)
+    rounds = FEW if value > FAR * rollers.tolerance else ROUNDS
+    for turn in range(rounds + 1):
         strayed = np.flatnonzero(np.ptp(theta, axis=1) > APART)
         if len(strayed) and turn:
             theta[strayed] = rollers.worst(triangles[strayed].reshape(-1, 3)).theta.reshape(-1, 3)
@@ -135,7 +138,7 @@ def bare(rollers: Rollers, body: Body, known: Known, which: Indices) -> Peak:
         bound = max(bound, float(off[~left].max(initial=-math.inf)))
         if not left.any():
             break
-        if turn == ROUNDS or 2 * np.count_nonzero(left) > MOST_PARTS:
+        if turn == rounds or 2 * np.count_nonzero(left) > MOST_PARTS:
             bound = max(bound, float(off.max()))
             break
         triangles, theta = _halved(triangles[left], theta[left])

@@ -1,8 +1,9 @@
 """Developments of a barrel: lines of a drawing laid round a cylinder, and a turret set down on them there.
 
-A straight line of the drawing becomes a helix. The squared distance of its points from an axis bends along it, in the
-polar angle, by no more than `2 (r^2 + climb^2)` above and `2 r` times the distance below: so points close to one
-another settle both what stands out and what is bare. A development says nothing of any other radius.
+A straight line of the drawing becomes a helix. The second derivative of the squared distance of its points from an
+axis, by the polar angle, is at most `2 (r^2 + climb^2)` and at least -2 r times the distance. So points close to one
+another settle what stands out and what is bare, within a remainder. The turret is set down at the angles between such
+points, and its errors there are a sample. A development says nothing of any other radius.
 """
 
 from __future__ import annotations
@@ -13,8 +14,9 @@ from typing import TYPE_CHECKING, NamedTuple
 import numpy as np
 
 from kin.indexing.holding import by_error
+from kin.indexing.intent import SIDES
 from kin.indexing.rollers import REACH, Rollers
-from kin.indexing.verdict import FlankVerdict, MotionError
+from kin.indexing.verdict import CONTOUR, MOTION, FlankVerdict, MotionError
 from kin.indexing.volume import swept_stretches
 from kin.numeric.angles import TURN, degrees
 from kin.numeric.arrays import runs_of
@@ -25,18 +27,12 @@ from kin.numeric.records import dataclass, replace
 
 if TYPE_CHECKING:
     from kin.indexing.intent import Developed, IndexIntent, Limits
-    from kin.law.contacts import Side
     from kin.numeric.arrays import Array, Mask
 
-CONTOUR, MOTION = "contour", "motion"
 FINE = 0.05  # of the tolerance, within which what lies between points is known
 MOST = 200_000  # points of a line
-SLACK = 1e-6  # of a limit that follows from the steepest place
 ANGLES = 720  # of a turn, at which it is looked whether a line is missing
-MEETINGS = 40  # steps to the angle at which an axis meets a cylinder
-NUDGE = 1e-4  # rad, by which the cam and the turret are turned to see how a path goes on
 BESIDE = 0.1  # of a roller's radius: a line that is farther off is another one
-SIDES: dict[str, Side] = {"lower": -1, "upper": 1}
 
 
 class _Line(NamedTuple):
@@ -54,7 +50,8 @@ class _Line(NamedTuple):
 class _Measured:
     """What a line shows: its distance in the drawing, mm, at an angle, rad, and the turret's errors (m,), rad.
 
-    Both are known within remainders. An error of the line of 1 mm costs `cost`, rad, at most.
+    The distance is known within `remainder`, each error within `room`. An error of the line of 1 mm turns the turret by
+    `cost`, rad, at most.
     """
 
     off: float
@@ -79,8 +76,7 @@ def judged_line(
     if short is not None:
         why = f"the line is missing at x = {length_words(short[0])}, y = {length_words(short[1])} {UNIT}"
         return FlankVerdict(line.layer), [failed(CONTOUR, why, unit="mm", limit=limits.tolerance)]
-    measure = _pitch if line.flank == "pitch" else _flank
-    found = measure(parts, rollers, line)
+    found = _flank(parts, rollers, line)
     slack = ROUNDING * max(float(np.abs(part).max()) for part in parts)
     alone = f"at a radius of {length_words(line.radius)} {UNIT} alone"
     sure = f"true within {length_words(found.remainder, '.2g')} {UNIT}"
@@ -92,7 +88,7 @@ def judged_line(
     sizes = float(np.abs(errors[k])), degrees(float(found.angles[k])), math.degrees(found.room)
     motion = MotionError(*sizes, float(errors.min()), float(errors.max()), float(np.sqrt(np.mean(errors**2))))
     given = None if limits.motion is None else math.degrees(limits.motion)
-    cost = math.degrees(found.cost) * (1.0 + SLACK)
+    cost = math.degrees(found.cost)
     limit, room = limit_of(lambda e: e * cost, given, limits.tolerance, slack)
     check = at_most(MOTION, motion.max, limit, "deg", detail=alone, slack=room)
     checks.append(replace(check, at=motion.at))
@@ -103,11 +99,8 @@ def _missing(parts: list[Array], rollers: Rollers, line: Developed, depth: float
     """A place x, y, mm, at which no line is drawn and one should be; None where there is none."""
     intent, turn = rollers.intent, TURN * line.radius
     phi = (np.arange(ANGLES) + 0.5) * np.float64(TURN / ANGLES)
-    if line.flank == "pitch":
-        wanted = [height for _, height in _paths(rollers, line.radius, phi)]
-    else:
-        side = SIDES[line.flank]
-        wanted = [least if side < 0 else most for least, most in swept_stretches(rollers, depth, phi)]
+    below = SIDES[line.flank] < 0
+    wanted = [least if below else most for least, most in swept_stretches(rollers, depth, phi)]
     starts = np.concatenate([part[:-1] for part in parts])
     lasts = np.concatenate([part[1:] for part in parts])
     low, high = np.minimum(starts[:, 0], lasts[:, 0]), np.maximum(starts[:, 0], lasts[:, 0])
@@ -196,52 +189,3 @@ def _flank(parts: list[Array], rollers: Rollers, line: Developed) -> _Measured:
     room = laid.room / (2.0 * radius)
     cost = by_error(rollers, side, form.developed(line.radius))
     return _Measured(float(off[k]), float(worst.theta[k]), room, errors, angles, room * cost, cost)
-
-
-def _pitch(parts: list[Array], rollers: Rollers, line: Developed) -> _Measured:
-    """The path on which the rollers' axes meet the cylinder: its height tells the turret's position itself."""
-    form, turning, radius = rollers.intent.form, rollers.turning, line.radius
-    laid = _laid(parts, rollers, radius)
-    phi, z = np.arctan2(laid.points[:, 1], laid.points[:, 0]), laid.points[:, 2]
-    paths = _paths(rollers, radius, phi)
-    apart = np.stack([np.where(np.isfinite(height), np.abs(height - z), np.inf) for _, height in paths])
-    k, rows = apart.argmin(axis=0), np.arange(len(phi))
-    theta, height = (np.stack(list(values))[k, rows] for values in zip(*paths, strict=True))
-    k = k - rollers.intent.stops
-    beside = []
-    for step in (-NUDGE, 0.0, NUDGE):
-        psi = turning.at(theta + step)[0] + rollers.intent.pitch * (np.floor((theta + step) / TURN) + k)
-        ahead, level = form.met(radius, psi)
-        beside.append((theta + step + ahead, level, *form.met(radius, psi + NUDGE)))
-    (low, below, *_), (_, _, moved, lifted), (high, above, *_) = beside
-    climb = (above - below) / (high - low)
-    rate = (lifted - height - climb * (moved - (beside[1][0] - theta))) / NUDGE
-    error = np.where(np.isfinite(height), z - height, math.inf)
-    off = np.abs(error) / np.hypot(1.0, climb / radius)
-    with np.errstate(invalid="ignore"):
-        bend = np.abs(above - 2.0 * height + below) / NUDGE**2 + np.abs(climb) * np.abs(high - 2.0 * beside[1][0] + low)
-    slow = float(np.nanmin((high - low) / (2.0 * NUDGE)))
-    gap = float(np.abs(np.diff(phi)[laid.joined & (np.abs(np.diff(phi)) < 1.0)]).max(initial=0.0))
-    room = 0.125 * float(np.nanmax(bend)) / slow**2 * gap**2
-    worst = int(np.where(np.isfinite(off), off, np.inf).argmax())
-    errors = np.where(np.isfinite(error), error / rate, math.pi)
-    cost = float(np.nanmax(np.hypot(1.0, climb / radius) / np.abs(rate)))
-    return _Measured(float(off[worst]), float(theta[worst]), room, errors, theta, room * cost, cost)
-
-
-def _paths(rollers: Rollers, radius: float, phi: Array) -> list[tuple[Array, Array]]:
-    """Angles of the cam at which axes of rollers, one after another, meet a cylinder at polar angles (n,), and heights.
-
-    An axis leaves the radius of the cam slowly, so that going back by how far it is ahead leads to the angle.
-    """
-    form, turning, pitch = rollers.intent.form, rollers.turning, rollers.intent.pitch
-    found = []
-    for k in range(-rollers.intent.stops, rollers.intent.stops + 1):
-        theta = phi.copy()
-        ahead = height = np.zeros_like(phi)
-        for _ in range(MEETINGS):
-            psi = turning.at(theta)[0] + pitch * (np.floor(theta / TURN) + k)
-            ahead, height = form.met(radius, np.where(np.abs(psi) < 0.5 * math.pi, psi, np.nan))
-            theta = np.where(np.isfinite(ahead), phi - ahead, theta)
-        found.append((theta, height))
-    return found

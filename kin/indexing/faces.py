@@ -1,10 +1,10 @@
 """Which face of the intended cam each triangle belongs to, and how far the plain ones are off.
 
-Blank and floor are layers of the form, ends are level, the bore is an outline drawn along z. A triangle within the
-tolerance of a plain face, inside included, belongs to the nearest of them; corners alone do not tell, as all three may
-lie on an edge between two faces. Of the others each belongs to the flanks or to a plain face, whichever is nearer.
-The depth of a layer bends by bounds that the form gives, so that what lies between corners is known; where that leaves
-too much open, triangles are divided.
+Plain faces are the blank and the floor, which are layers of the form, the level ends, and the bore, an outline along z.
+A triangle that lies with all of its inside within the tolerance of plain faces belongs to the nearest of them. Corners
+alone do not tell, as all three may lie on an edge between two faces. Any other triangle belongs to the flanks or to a
+plain face, whichever is nearer. The form bounds how far the inside of a triangle is from a layer; where the bound is
+too large, the triangle is divided. The inside is sampled against the bore, whose outline its edges then follow.
 """
 
 from __future__ import annotations

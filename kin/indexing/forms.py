@@ -1,11 +1,12 @@
-"""The two forms of indexing cams: how a point stands to the turret, and what a roller's distance is made of.
+"""The two forms of indexing cams: where a point is in a turret's axes, and how far it is from a roller's axis.
 
-Axes: z is the cam's axis, mm and radians, heights are over that of the turret's centre. The cam stands still and the
-turret runs round it, counter-clockwise seen from +z, by the shaft angle theta; e_r and e_t are the radius and the way
-round at theta. A point is at X along e_r, Y along e_t and Z above. Every roller's axis lies in a plane that turns with
-theta, or square to it; in the plane of the turret the point has the coordinates (u, v), in which a roller at the angle
-psi is at cos psi, sin psi, and it is t away from that plane. So the distance from a roller's axis depends on theta
-through u, v and t alone, and on the turret through d, the point's polar angle less psi.
+Lengths are in mm, angles in radians. z is the cam's axis, and heights are over the turret's centre. The cam stands
+still and the turret runs round it by the shaft angle theta, counter-clockwise seen from +z. e_r and e_t are the
+directions of the radius and of the turning at theta. A point is at x along e_r, at y along e_t, and at a height z.
+
+The turret's plane is square to the turret's axis. In it the point has the coordinates (u, v), in which a roller at the
+angle psi is in the direction (cos psi, sin psi). s is the point's distance from the turret's axis, and d its polar
+angle in that plane less psi.
 
 `depth_of` counts the layers of both forms alike: 0 on the blank and growing into the metal, to `depth` on the floor.
 """
@@ -44,13 +45,10 @@ class Form(Protocol):
 
     @property
     def inwards(self) -> int:
-        """Which way along a roller its deeper end is."""
+        """1 where the depth rises with the place along a roller, -1 where it falls."""
 
     def developed(self, radius: float) -> float:
         """Depth of the cylinder of a radius, mm; raises ValueError for a form whose layers are no cylinders."""
-
-    def met(self, radius: float, psi: Array) -> tuple[Array, Array]:
-        """Where rollers' axes at angles psi meet the cylinder of a radius: polar angle ahead of theirs, and height."""
 
     def demand(self, stops: int, roller: float, ends: tuple[float, float]) -> None:
         """Raise ValueError for a turret that such a form cannot have; `ends` are the heights of both faces."""
@@ -99,6 +97,9 @@ class Form(Protocol):
 
     def depth_at(self, place: float) -> float:
         """Depth of the layer that a roller reaches at a place along it, if it is level and on a radius of the cam."""
+
+    def deepest(self, place: float, radius: float) -> float:
+        """Depth of the deepest place of the flat end of a roller of a radius, at a place along it."""
 
     def bent(self, ways: Array, places: Array) -> tuple[Array, Array]:
         """How far the depth may be above and below that of a plane, mm (t,), on triangles.
@@ -151,23 +152,17 @@ class Barrel:
 
     @property
     def lever(self) -> float:
-        """The pitch radius."""
+        """A flank bears on rollers at the pitch radius."""
         return self.pitch
 
     @property
     def inwards(self) -> int:
-        """Places along a roller are counted from the cam's axis."""
+        """-1: places along a roller are counted from the cam's axis."""
         return -1
 
     def developed(self, radius: float) -> float:
-        """Below the blank's radius."""
+        """Depth of a cylinder below the blank."""
         return self.radius - radius
-
-    def met(self, radius: float, psi: Array) -> tuple[Array, Array]:
-        """Axes are parallel to the radius of the cam; nan where they pass the cylinder by."""
-        with np.errstate(invalid="ignore"):
-            ahead = np.arcsin((self.offset - self.sense * self.pitch * np.cos(psi)) / radius)
-        return ahead, np.where(np.isfinite(ahead), self.pitch * np.sin(psi), np.nan)
 
     def demand(self, stops: int, roller: float, _ends: tuple[float, float]) -> None:
         """Raise ValueError where the rollers on the turret overlap."""
@@ -175,7 +170,7 @@ class Barrel:
             raise ValueError("neighbouring rollers overlap")
 
     def depth_of(self, r: Array, z: Array) -> Array:
-        """Depth below the blank."""
+        """Depth of points below the blank's cylinder."""
         return np.asarray(self.radius - r + 0.0 * z)
 
     def rims(self, depth: float, z: Array) -> Array:
@@ -183,39 +178,39 @@ class Barrel:
         return np.asarray(self.radius - depth + 0.0 * z)
 
     def plane(self, _x: Array, y: Array, z: Array) -> tuple[Array, Array]:
-        """The turret's plane is square to the rollers."""
+        """Coordinates in the plane of e_t and z, which is square to the rollers."""
         return self.sense * (self.offset - y), z
 
     def beside(self, _y: Array, u: Array, v: Array, psi: Array) -> tuple[Array, Array]:
-        """Axes are points of the turret's plane."""
+        """Place from a roller's axis, which is a point of the turret's plane."""
         return u - self.pitch * np.cos(psi), v - self.pitch * np.sin(psi)
 
     def touch(self, s: Array, _y: Array, radius: Array) -> Array:
-        """By the law of cosines."""
+        """Angle of touch, by the law of cosines."""
         half = (radius**2 - (s - self.pitch) ** 2) / (4.0 * self.pitch * s)
         with np.errstate(invalid="ignore"):
             angle: Array = 2.0 * np.arcsin(np.sqrt(half))
         return angle
 
     def slope(self, s: Array, d: Array) -> Array:
-        """Derivative of the law of cosines."""
+        """Derivative of the squared distance, by the law of cosines."""
         return np.asarray(2.0 * self.pitch * s * np.sin(d))
 
     def along(self, x: Array, _s: Array, _d: Array) -> Array:
-        """Distance from the cam's axis."""
+        """Distance along e_r from the cam's axis."""
         return x
 
     def across(self, way: Array, sine: Array, cosine: Array, _psi: Array) -> Array:
-        """All rollers point along e_r."""
+        """Squared lengths square to e_r, along which all rollers point."""
         over = way[:, 1] * cosine - way[:, 0] * sine
         return np.asarray(over**2 + way[:, 2] ** 2)
 
     def turning(self, _slope: float) -> float:
-        """They turn with e_r."""
+        """1: axes turn with e_r."""
         return 1.0
 
     def window(self, r: Array, z: Array, reach: float) -> tuple[Array, Array]:
-        """The circle of the axes is crossed at a height; where the far side of the turret is in reach, it counts."""
+        """Angles at which a height crosses the circle of the axes, on the turret's far side too if that is in reach."""
         most = np.sqrt(np.maximum((self.pitch + reach) ** 2 - z**2, 0.0))
         least = np.sqrt(np.maximum((self.pitch - reach) ** 2 - z**2, 0.0))
         least = np.where(abs(self.offset) + least <= r, -most, least)
@@ -224,14 +219,14 @@ class Barrel:
         return np.arcsin(np.minimum(*share)), np.arcsin(np.maximum(*share))
 
     def bends(self, slope: Array, curve: Array, near: tuple[float, float, float]) -> Array:
-        """With q the point and c the axis, |q - c|^2 bends by 2 |q' - c'|^2 + 2 (q - c).(q'' - c'')."""
+        """Bounds of 2 |q' - c'|^2 + 2 (q - c).(q'' - c''), with q the point and c the axis."""
         reach, step, r = near
         fast = r + self.pitch * slope
         far = reach + fast * step
         return np.asarray(2.0 * fast**2 + 2.0 * far * (r + self.pitch * (curve + slope**2)))
 
     def costs(self, rho: Array, turret: tuple[Array, Array], radius: float) -> tuple[Array, Array, Array]:
-        """By the pressure angle, between the roller's way and the normal: (l psi' + s rho sin psi)/(rho cos psi)."""
+        """Costs by the pressure angle, whose tangent is (l psi' + sense rho sin psi)/(rho cos psi)."""
         psi, slope = turret
         alpha = np.arctan2(self.pitch * slope + self.sense * rho * np.sin(psi), rho * np.cos(psi))
         leaning = alpha - self.sense * psi
@@ -243,12 +238,16 @@ class Barrel:
         """Below the blank's radius."""
         return self.radius - place
 
+    def deepest(self, place: float, _radius: float) -> float:
+        """A flat end is nearest to the cam's axis where a radius of the cam meets it."""
+        return self.depth_at(place)
+
     def bent(self, ways: Array, places: Array) -> tuple[Array, Array]:
-        """Across the axis chords run below the cylinder."""
+        """Depth above that of a plane alone: chords across the axis run below the cylinder."""
         return 0.5 * spread(_round(ways, places)[0]), np.zeros(len(places))
 
     def swept(self, depth: Array, ahead: Array, psi: Array, reach: tuple[float, int]) -> Array:
-        """In the turret's plane a point of the cylinder goes up and down at its u."""
+        """Height by Pythagoras in the turret's plane, where a point of the cylinder stays at its u."""
         radius, side = reach
         u, _ = self.plane(ahead, (self.radius - depth) * np.sin(ahead), ahead)
         with np.errstate(invalid="ignore"):
@@ -256,15 +255,15 @@ class Barrel:
         return height
 
     def faces(self, depth: Array, ends: tuple[float, float]) -> tuple[Array, Array]:
-        """They are level."""
+        """Heights of the faces, which are level."""
         return np.full_like(depth, ends[0]), np.full_like(depth, ends[1])
 
     def measure(self, depth: Array, height: Array) -> Array:
-        """Of a cylinder."""
+        """Area of a cylinder per polar angle, below a height."""
         return np.asarray((self.radius - depth) * height)
 
     def core(self, ends: tuple[float, float]) -> float:
-        """A cylinder."""
+        """Volume of a cylinder."""
         return math.pi * (self.radius - self.depth) ** 2 * (ends[1] - ends[0])
 
 
@@ -282,20 +281,16 @@ class Globoid:
 
     @property
     def lever(self) -> float:
-        """The floor's radius about the turret's axis."""
+        """A flank bears at most at the floor's distance from the turret's axis."""
         return self.radius + self.depth
 
     @property
     def inwards(self) -> int:
-        """Places along a roller are counted from the turret's axis."""
+        """1: places along a roller are counted from the turret's axis."""
         return 1
 
     def developed(self, _radius: float) -> float:
-        """None: a torus does not unroll. Raises ValueError."""
-        raise ValueError("a globoid has no development")
-
-    def met(self, _radius: float, _psi: Array) -> tuple[Array, Array]:
-        """None: there is no development. Raises ValueError."""
+        """Raise ValueError: a torus does not unroll."""
         raise ValueError("a globoid has no development")
 
     def demand(self, stops: int, roller: float, ends: tuple[float, float]) -> None:
@@ -309,7 +304,7 @@ class Globoid:
             raise ValueError("the floor reaches the axis of the cam")
 
     def depth_of(self, r: Array, z: Array) -> Array:
-        """Distance from the turret's circle of the turning turret, less the throat's."""
+        """Distance of points from the circle of the turning turret's centre, less the throat's radius."""
         return np.asarray(np.hypot(self.distance - r, z) - self.radius)
 
     def rims(self, depth: float, z: Array) -> Array:
@@ -318,15 +313,15 @@ class Globoid:
         return np.asarray(self.distance - np.sqrt(np.maximum(wide**2 - z**2, 0.0)))
 
     def plane(self, x: Array, _y: Array, z: Array) -> tuple[Array, Array]:
-        """The turret's plane has both axes of the cam, e_r and k."""
+        """Coordinates in the plane of e_r and z, in which the rollers lie."""
         return self.distance - x, z
 
     def beside(self, y: Array, u: Array, v: Array, psi: Array) -> tuple[Array, Array]:
-        """Axes are lines in the turret's plane through its centre."""
+        """Place from a roller's axis, which is a line of the turret's plane through its centre."""
         return y, u * np.sin(psi) - v * np.cos(psi)
 
     def touch(self, s: Array, y: Array, radius: Array) -> Array:
-        """Within the plane a roller is as wide as the point's distance from it leaves."""
+        """Angle of touch of the section of a roller at the point's distance from the turret's plane."""
         with np.errstate(invalid="ignore"):
             angle: Array = np.arcsin(np.sqrt(radius**2 - y**2) / s)
         return angle
@@ -340,24 +335,24 @@ class Globoid:
         return np.asarray(s * np.cos(d))
 
     def across(self, way: Array, sine: Array, cosine: Array, psi: Array) -> Array:
-        """An axis lies along -cos psi e_r + sin psi k."""
+        """Squared lengths square to an axis, which lies along -cos psi e_r + sin psi k."""
         out, over = way[:, 0] * cosine + way[:, 1] * sine, way[:, 1] * cosine - way[:, 0] * sine
         return np.asarray(over**2 + (out * np.sin(psi) + way[:, 2] * np.cos(psi)) ** 2)
 
     def turning(self, slope: float) -> float:
-        """They turn with e_r and on the turret."""
+        """Axes turn with e_r, and on the turret."""
         return math.hypot(1.0, slope)
 
     def window(self, r: Array, _z: Array, reach: float) -> tuple[Array, Array]:
-        """All rollers pass through the line along e_r: at a reach from it, on the turret's side of the cam."""
+        """Angles within reach of the turret's plane, in which all axes lie."""
         wide = np.arcsin(np.clip(reach / np.maximum(r, 1e-9), 0.0, 1.0))
         return -wide, wide
 
     def bends(self, slope: Array, curve: Array, near: tuple[float, float, float]) -> Array:
-        """With y and x across and within the plane, y^2 + x^2 bends by 2 (y'^2 + y y'' + x'^2 + x x'').
+        """Bounds of 2 (y'^2 + y y'' + x'^2 + x x''), with y across the turret's plane and x within it.
 
-        There x = u sin psi - v cos psi, so that x' = u' sin psi + rho psi' and
-        x'' = u'' sin psi + 2 u' cos psi psi' + rho psi'' - x psi'^2, with u' = -y and u'' = X.
+        x = u sin psi - v cos psi, and x' = u' sin psi + rho psi', with u' = -y. Likewise
+        x'' = u'' sin psi + 2 u' cos psi psi' + rho psi'' - x psi'^2, where u'' is the point's distance along e_r.
         """
         reach, step, r = near
         beside = reach + r * step
@@ -367,7 +362,7 @@ class Globoid:
         return np.asarray(2.0 * (r**2 + wide**2 + within))
 
     def costs(self, rho: Array, turret: tuple[Array, Array], radius: float) -> tuple[Array, Array, Array]:
-        """By the pressure angle, between the roller's way and the normal: rho psi'/(C - rho cos psi)."""
+        """Costs by the pressure angle, whose tangent is rho psi'/(C - rho cos psi)."""
         psi, slope = turret
         alpha = np.arctan2(rho * slope, self.distance - rho * np.cos(psi))
         up = radius * np.cos(alpha)
@@ -380,8 +375,12 @@ class Globoid:
         """Beyond the throat's radius."""
         return place - self.radius
 
+    def deepest(self, place: float, radius: float) -> float:
+        """The rim of a flat end is farther from the turret's axis than its middle."""
+        return math.hypot(place, radius) - self.radius
+
     def bent(self, ways: Array, places: Array) -> tuple[Array, Array]:
-        """Round the cam's axis chords run deeper, along the throat they run outside the torus."""
+        """Depth above and below that of a plane: chords round the cam's axis run deeper, those along the throat not."""
         over, r = _round(ways, places)
         wide = np.hypot(self.distance - np.hypot(places[:, 0], places[:, 1]), places[:, 2])
         longest = np.sqrt((ways**2).sum(axis=2)).max(axis=0)
@@ -389,7 +388,7 @@ class Globoid:
         return 0.5 * spread(over), 0.5 * spread(along) / np.maximum(wide - longest, 1e-9)
 
     def swept(self, depth: Array, ahead: Array, psi: Array, reach: tuple[float, int]) -> Array:
-        """By Newton's method along the circle of the layer, from a place straight above the roller."""
+        """Angle by Newton's method along the circle of the layer, from a place straight above the roller."""
         radius, side = reach
         wide = self.radius + depth
         height = psi + side * np.arcsin(radius / wide)
@@ -410,12 +409,12 @@ class Globoid:
         return np.arcsin(ends[0] / wide), np.arcsin(ends[1] / wide)
 
     def measure(self, depth: Array, height: Array) -> Array:
-        """Of a torus."""
+        """Area of a torus per polar angle, below an angle."""
         wide = self.radius + depth
         return np.asarray(wide * (self.distance * height - wide * np.sin(height)))
 
     def core(self, ends: tuple[float, float]) -> float:
-        """Within a torus, by the squares of distances from the cam's axis."""
+        """Volume within a torus, by the squares of distances from the cam's axis."""
         wide, c = self.radius + self.depth, self.distance
         heights = np.array(ends)
         root = np.sqrt(wide**2 - heights**2)

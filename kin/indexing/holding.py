@@ -1,10 +1,10 @@
-"""What the file's flanks hold the turret by, over the angles of the cam, by positions of its rollers alone.
+"""How a file's flanks hold the turret, over the angles of the cam, by positions of its rollers alone.
 
-In a layer the triangles of a flank are cut to lines, and each line is asked at those of its places that the roller
-touches about the middle of a step of the angle, as the worst angles of the corners tell. A place is a point of the
-file's surface, wherever on it: so what the best place holds is held. It is asked at both ends of the step. Between them
-its excess is above the greater of both by no more than a bound that the form gives, and since the excess is convex in
-the turret's angle, that is worth no more than the bound over the excess's slope. How far a flank pushes the turret at
+Layers cut the triangles of a flank to lines. On each line those places are looked at that a roller touches about the
+middle of a step of the angle; the worst angles of the corners tell them. A place is a point of the file's surface, so
+the turret is held at least as well as by the best of them. Each is looked at from both ends of the step. Between the
+ends its excess is above the greater of both by no more than a bound that the form gives. The excess is convex in the
+turret's angle, so that this turns the turret by at most the bound over the slope. How far a flank pushes the turret at
 most follows from the worst angles of its corners and edges (`kin.indexing.contour`).
 """
 
@@ -28,9 +28,11 @@ if TYPE_CHECKING:
 
 SHARE = 0.05  # of the tolerance: what angles between two of the grid may cost
 LEAST, MOST = 1024, 65_536  # angles of the grid
-LAYERS = (0.137, 0.382, 0.618, 0.881)  # of the length of a roller, at which flanks are asked
+LAYERS = (0.02, 0.14, 0.26, 0.38, 0.5, 0.62, 0.74, 0.86, 0.98)  # of the length of a roller, at which flanks are asked
 NEAR = 1e-3  # mm: a roller that touches so near the blank or the floor touches a flank
+EVEN = 1e-6  # of a step: so near its middle an angle counts as there
 MEETINGS = 30  # steps to the place of a roller that touches a layer
+SLACK = 1e-6  # of the cost at the steepest of these places, for steeper ones between them
 ANGLES = 720  # at which the steepest place is looked for
 
 
@@ -70,7 +72,8 @@ def _places(
 ) -> tuple[Array, Indices]:
     """Places (m, 3) in a layer and the numbers (m,) of the steps about whose middle a roller touches them."""
     intent, (share, width) = rollers.intent, about
-    one, other = (intent.form.depth_at(place) for place in (intent.inner, intent.outer))
+    # beside a roller its flanks lie where the rim of its end would be
+    one, other = (intent.form.deepest(place, intent.roller) for place in (intent.inner, intent.outer))
     level = one + share * (other - one)
     corners = body.corners[which]
     depth = body.depth[corners] - level
@@ -91,8 +94,9 @@ def _places(
         angle = theta[rows, alone] + part * (theta[rows, next_] - theta[rows, alone])
         ends.append((place, angle))
     (a, low), (b, high) = ends
-    first = np.ceil(np.minimum(low, high) / width - 0.5).astype(np.intp)
-    last = np.floor(np.maximum(low, high) / width - 0.5).astype(np.intp)
+    # neighbours have a place in common, but its angle in each of them to within rounding alone
+    first = np.ceil(np.minimum(low, high) / width - 0.5 - EVEN).astype(np.intp)
+    last = np.floor(np.maximum(low, high) / width - 0.5 + EVEN).astype(np.intp)
     own, more = runs_of(np.maximum(last - first + 1, 0))
     step = first[own] + more
     way = (high - low)[own]
@@ -127,7 +131,7 @@ def _take(rollers: Rollers, places: tuple[Array, Indices], side: Side, rows: lis
 
 
 def by_error(rollers: Rollers, side: Side, layer: float | None = None) -> float:
-    """Greatest turn of the turret, rad, that an error of 1 mm of a flank costs where it may carry a roller.
+    """Greatest turn of the turret, rad, that an error of 1 mm of a flank costs where it may carry a roller: sampled.
 
     It is that along the whole roller, or where it touches the layer of a depth, mm.
     """
@@ -148,4 +152,4 @@ def by_error(rollers: Rollers, side: Side, layer: float | None = None) -> float:
             there = (np.abs(own) < 0.5 * math.pi) & (height >= intent.ends[0]) & (height <= intent.ends[1])
             there &= (depth >= -NEAR) & (depth <= form.depth + NEAR)
             worst = max(worst, float(cost[there].max(initial=0.0)))
-    return worst
+    return worst * (1.0 + SLACK)

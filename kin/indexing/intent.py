@@ -1,8 +1,8 @@
 """Intended indexing cams and permitted errors: all that the judge takes beside the file itself.
 
-A cam reaches from z = 0 to its length, from its bore to its blank. All that rollers without ends sweep on the turret's
-side of the cam is cut from the blank, down to the floor, which is a layer of the form. What is left between the rollers
-is a rib that winds from one end to the other. The metal below a roller is its lower flank, that above it the upper one.
+A cam reaches from z = 0 to its length, from its bore to its blank. Rollers without ends, on the turret's side of the
+cam, sweep a groove in the blank, down to the floor, which is a layer of the form. What is left between the rollers is a
+rib that winds from one end to the other. The metal below a roller has the lower flank, that above it the upper one.
 """
 
 from __future__ import annotations
@@ -22,8 +22,9 @@ if TYPE_CHECKING:
     from kin.law.contacts import Side
     from kin.law.piecewise import Piecewise
 
-__all__ = ["Barrel", "Developed", "Globoid", "IndexIntent", "Limits"]
+__all__ = ["SIDES", "Barrel", "Developed", "Globoid", "IndexIntent", "Limits"]
 
+SIDES: dict[str, Side] = {"lower": -1, "upper": 1}  # of a roller on which a flank lies
 VELOCITY = 1e-9  # rad per rad: a jump of the velocity below this is rounding
 
 
@@ -87,14 +88,11 @@ class IndexIntent:
 
 @dataclass(frozen=True)
 class Developed:
-    """A line of a barrel's development, by its layer, unrolled at a `radius`, mm: x = radius phi over a turn, y = z.
-
-    flank  "lower" or "upper", as the flank meets the cylinder of that radius; "pitch" for the rollers' axes there
-    """
+    """A line of a barrel's development, by its layer: a flank unrolled at a `radius`, mm: x = radius phi, y = z."""
 
     layer: str
     radius: float
-    flank: Literal["lower", "upper", "pitch"]
+    flank: Literal["lower", "upper"]
 
 
 @dataclass(frozen=True)

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from kin.law.bounds import cubic_cells
+from kin.law.bounds import cubic_cells, cubics_between
 from kin.numeric.angles import TURN
 from kin.numeric.records import dataclass
 
@@ -34,11 +34,7 @@ class Turning:
     def _cells(self) -> tuple[Array, Array]:
         """Angles (m + 1,) over a turn from 0, and coefficients (4, m) of the cubics between them."""
         nodes = cubic_cells(self.law, self.law.breaks, NEAR)
-        low, high = nodes[:-1], nodes[1:]
-        (f, g), (f1, g1) = self.law.derivatives(low, 1, 1), self.law.derivatives(high, 1, -1)
-        h = high - low
-        rise = (f1 - f) / h
-        return nodes, np.stack([f, g, (3.0 * rise - 2.0 * g - g1) / h, (g + g1 - 2.0 * rise) / h**2])
+        return nodes, cubics_between(self.law, nodes)
 
     def at(self, theta: Array) -> tuple[Array, Array]:
         """Angle of a roller, rad, and its slope (n,) each at angles of the cam (n,), rad, folded to one turn."""

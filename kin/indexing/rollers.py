@@ -1,15 +1,15 @@
 """How near points and edges come to any roller of the turret, over all angles of the cam, by positions alone.
 
 The excess of a point at an angle is its squared distance from the nearest roller's axis less the squared radius of that
-roller; of an edge it is that of its point nearest to the axis. It is looked at on equal angles wherever a roller may be
-within reach. Between two of them the excess of no point falls below the lesser of both by more than step^2/8 times its
-second derivative, which the form bounds: nor does that of an edge. So only steps that may still hold the least are
-divided, again and again, until what is left open is next to nothing. Neither a normal nor a flank is needed.
+roller; of an edge it is that of its point nearest to the axis. It is computed at equal angles wherever a roller may be
+within reach. Between two angles the excess of a point falls below the lesser of both by at most step^2/8 times its
+second derivative, which the form bounds. The same holds of an edge. So only steps that may still hold the least are
+divided, until next to nothing is left open. Neither a normal nor a flank is needed.
 
-How fast the excess of a point grows is told by the same steps: at x beyond CLOSE finest steps of its worst angle it is
-above its least by `growth` times x^2 at least, or the axes are out of reach there. Seen along an axis, the excess of an
-edge as long as e is below the lesser of its ends' by e^2/4 at most: away from the worst angles of its ends an edge need
-not be looked at. An axis that a triangle is nearer to than its edges passes through it, so that it is near those too.
+The same steps tell how fast the excess of a point grows. At x beyond CLOSE finest steps from its worst angle it exceeds
+its least by at least `growth` times x^2, or the axes are out of reach there. Seen along an axis, the excess of an edge
+of the length e is below the lesser of its ends' by at most e^2/4. So an edge is searched only about the worst angles of
+its ends. An axis that is nearer to a triangle than to its edges passes through it, so that it is near those too.
 """
 
 from __future__ import annotations
@@ -180,8 +180,8 @@ class Rollers:
     def edges(self, start: Array, last: Array, worst: tuple[Worst, Worst]) -> Worst:
         """Edges between points (n, 3), (n, 3) that are `worst` at both ends, each at its least excess.
 
-        They are no longer than `longest`. Edges that are not worse than their ends are told with those, and edges that
-        cannot be worse than their ends by more than a share of the tolerance are not looked at.
+        They are no longer than `longest`. An edge that is not worse than its ends has the worse end's place. Edges that
+        cannot be worse than their ends by more than a share of the tolerance are not searched.
         """
         one, other = worst
         way = other.theta - one.theta

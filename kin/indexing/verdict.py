@@ -11,6 +11,8 @@ if TYPE_CHECKING:
     from kin.numeric.check import Check
     from kin.read.mesh.mesh import Mesh
 
+CONTOUR, MOTION = "contour", "motion"  # checks of solids and of developments
+
 
 @dataclass(frozen=True)
 class MotionError:
@@ -18,8 +20,8 @@ class MotionError:
 
     An error above 0 pushes the turret away from the metal of the flank.
 
-    max          greatest magnitude found, at the shaft angle `at`, degrees; no error exceeds it by more than
-                 `remainder`, which is proved
+    max          greatest magnitude found, at the shaft angle `at`, degrees
+    remainder    of a solid no error exceeds `max` by more, which is proved; of a line those at the angles looked at
     least, most  the greatest error into the metal (below 0) and out of it
     rms          over equal steps of the shaft angle
     """

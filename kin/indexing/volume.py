@@ -1,8 +1,8 @@
 """The exact volume of an indexing cam: the blank less what rollers sweep, by quadrature over layers and angles.
 
-In a layer, at a polar angle, each roller sweeps one stretch of heights while it passes by. Its ends are the least and
-the greatest height at which the roller leaves the layer, over the angles of the cam at which it may: sampled, and
-between samples by the parabola through the greatest three. No flank is needed for it.
+In a layer, at a polar angle, each roller sweeps one stretch of heights while it passes. The stretch ends at the least
+and the greatest height at which the roller leaves the layer. These are sampled over the angles of the cam, and taken
+from the parabola through the greatest three samples. No flank is needed for it, and nothing is proved.
 """
 
 from __future__ import annotations

@@ -27,6 +27,15 @@ _AT_ONCE = 3  # most halvings of a cell in one step
 _MOST_CELLS = 20000  # open at a time: with more the answer is taken to be no
 
 
+def cubics_between(law: Piecewise, nodes: Array) -> Array:
+    """Coefficients (4, m), the constant first, of the cubics with a law's values and slopes at nodes (m + 1,), rad."""
+    low, high = nodes[:-1], nodes[1:]
+    (f, g), (f1, g1) = law.derivatives(low, 1, 1), law.derivatives(high, 1, -1)
+    h = high - low
+    rise = (f1 - f) / h
+    return np.stack([f, g, (3.0 * rise - 2.0 * g - g1) / h, (g + g1 - 2.0 * rise) / h**2])
+
+
 def undecided(
     function: Stretch, begin: float | Array, end: float | Array, limits: Mapping[int, tuple[float, float]]
 ) -> tuple[int, float] | None:

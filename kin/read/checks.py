@@ -22,6 +22,7 @@ if TYPE_CHECKING:
     from kin.read.errors import ReadError
     from kin.read.formats import AnySolid, Contents
 
+VOLUME = "volume"
 UNITS_SHARE = 1e-9  # two statements of the unit agree within this share
 SIZE_SHARE = (
     0.05  # a drawing that comes out by another unit's factor too large or small, within this, misstates its own
@@ -155,3 +156,17 @@ def unread_check(contents: Contents, error: ReadError) -> Check:
     remedy = "" if error.closing is None else f"; {_gap_remedy(error.closing)}"
     remedy = "; move the cam in its file until its shaft is there" if error.cams else remedy
     return failed(name, f"{error.message}{remedy}")
+
+
+def enclosed_check(measured: tuple[float, float], exact: tuple[float, float], tolerance: float) -> Check:
+    """Check of a solid's volume, mm^3, by what a surface within a tolerance, mm, encloses.
+
+    `measured` are its volume and its area, mm^2; `exact` are the volume of the exact part, and by how much it may be
+    off.
+    """
+    (volume, area), (expected, remainder) = measured, exact
+    detail = f"{length_words(volume, '.9g', 3)} {UNIT}^3, by the intent {length_words(expected, '.9g', 3)}"
+    if remainder:
+        detail += f", known within {length_words(remainder, '.2g', 3)} {UNIT}^3"
+    off = abs(volume - expected) + remainder
+    return at_most(VOLUME, off, tolerance * area, "mm^3", detail=detail, slack=ROUNDING * expected)

@@ -115,7 +115,7 @@ def wrong(path: Path, text: str) -> list[str]:
 class _Led(Rollers):
     """Rollers led by the law of a recipe."""
 
-    def __init__(self, recipe, law) -> None:  # type: ignore[no-untyped-def]
+    def __init__(self, recipe, law) -> None:
         turret = recipe.turret
         sizes = {key: float(value) for key, value in vars(turret).items()}
         super().__init__(turret.word, sizes, recipe.stops, 0.0, recipe.start)

@@ -39,6 +39,7 @@ TOPICS = (
     "test_wunderlich",
     "test_linkages",
     "test_frame_forces",  # needs: dynamics
+    "test_indexing",  # needs: indexing
 )
 MISPRINT_HEAD = "| where | printed | right | measured | printed is off by |\n| --- | --- | --- | --- | --- |"
 

@@ -6,7 +6,12 @@ import ledger
 import pytest
 from support.page_tables import Row
 
-LONG = ("test_wunderlich", "test_linkages", "test_support_functions")  # seconds each
+LONG = (  # seconds each
+    "test_wunderlich",
+    "test_linkages",
+    "test_support_functions",
+    "test_indexing",  # needs: indexing
+)
 
 
 @pytest.mark.thin(3)

@@ -6,14 +6,7 @@ from those of f and g and from S'' and S'''. On an arm, beside a radius or with 
 implicit, and so is rho on a cylinder: its derivatives follow from A sin a - z' cos a = side y tan d and from
 rho^2 + q^2 = r^2, over balls of rho that hold every solution. All are balls over a cell.
 
-A triangle whose corners lie on the surface within h1 by h2 of its parameters is off by at most
-
-    (h1^2 M11 + 2 h1 h2 M12 + h2^2 M22)/8,   M bounds of |p_ij|
-
-(D. Filip, R. Magedson, R. Markot, Surface algorithms using bounds on derivatives, CAGD 3, 1986; the corners may lie
-anywhere in the cell, as the sum of a weight times the square of a difference from the mean is a variance). Of what lies
-along the surface only the second order counts: with N bounds of |p_ij . n| and n turning by t over the cell, the
-distance from the surface is at most that of N, and `BESIDE` t times that of M.
+`camgeo.fit.facets` bounds by them how far triangles are from the surface.
 """
 
 from __future__ import annotations
@@ -24,15 +17,13 @@ from typing import TYPE_CHECKING, NamedTuple
 import numpy as np
 
 from camgeo.capabilities.cylindrical.angles import looks_of
+from camgeo.fit.facets import facets_off, facets_width
 from kin.numeric.interval import Ball, asin, atan2, sin_cos
 
 if TYPE_CHECKING:
     from camgeo.capabilities.cylindrical.flank import Flank
     from kin.numeric.arrays import Array, Indices
 
-BESIDE = 2.1  # once for the normal of the place in place of the cell's, once for the surface beside the foot
-TINY = 1e-300  # keeps a quotient finite whose parts are both 0
-STEPS = 2  # by which a cell is made narrower until it holds its tolerance
 SETTLE, WIDER = 8, 1e-12  # rounds by which places along a roller are enclosed, and the rounding of the first
 
 
@@ -56,21 +47,11 @@ class Bends(NamedTuple):
 
     def off(self, h1: Array, h2: Array | float) -> Array:
         """Bound of the distance of triangles from the surface, mm (n,), in cells of h1 rad (n,) by h2 mm."""
-        square = np.stack([h1 * h1, 2.0 * h1 * h2, h2 * h2 + 0.0 * h1]) / 8.0
-        turn = self.turns[0] * h1 + self.turns[1] * h2
-        bound: Array = np.sum(square * self.across, axis=0) + BESIDE * turn * np.sum(square * self.whole, axis=0)
-        return bound
+        return facets_off(self, h1, h2)
 
     def step(self, h2: float, tolerance: float) -> Array:
         """Widths h1, rad (n,), of cells of h2 mm whose triangles are within a tolerance, mm; 0 where none is."""
-        rest = self.off(np.zeros_like(self.sweep), h2)
-        left = tolerance - rest
-        b = self.across[1] * h2
-        h1 = 8.0 * np.abs(left) / (b + np.sqrt(b * b + 8.0 * self.across[0] * np.abs(left)) + TINY)
-        h1 = np.minimum(h1, 1.0)
-        for _ in range(STEPS):  # above its value at 0 the bound is convex, so that it falls by the share at least
-            h1 = h1 * np.minimum(1.0, left / (self.off(h1, h2) - rest + TINY))
-        return np.where(left > 0.0, h1, 0.0)
+        return facets_width(self, h2, tolerance)
 
     def most(self, blocks: int) -> Bends:
         """Bounds over so many blocks of cells together, (n / blocks,) of (blocks, n / blocks)."""

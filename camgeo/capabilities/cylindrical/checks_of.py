@@ -13,7 +13,7 @@ from camgeo.capabilities.cylindrical.development import radii
 from camgeo.capabilities.cylindrical.figures import CONTACT_PRESSURE, at_angle, bears, steepest
 from camgeo.capabilities.cylindrical.flank import distance
 from camgeo.capabilities.cylindrical.keys import DEVELOPMENT
-from camgeo.measures.placed import Figure, figure_check, limit_checks
+from camgeo.measures.placed import figure_check, limits_and_wall
 from camgeo.measures.rule_remark import RuleRemark
 from camgeo.measures.units import in_units
 from camgeo.recipe.figures import LEAST_WALL, PRESSURE_ANGLE
@@ -23,6 +23,7 @@ if TYPE_CHECKING:
     from collections.abc import Sequence
 
     from camgeo.capabilities.cylindrical.design import DrumDesign
+    from camgeo.measures.placed import Figure
 
 STEEP = 30.0  # degrees, by rule of thumb for a follower on a straight guide
 STEEP_ARM = 45.0
@@ -73,9 +74,7 @@ def walls(design: DrumDesign) -> list[tuple[float, str]]:
 
 def limits_held(design: DrumDesign, figures: Sequence[Figure], checks: Sequence[Check]) -> list[Check]:
     """Checks of the figures that the recipe limits, those of the least wall among them."""
-    wall = next((check for check in checks if check.name == LEAST_WALL and check.value is not None), None)
-    more = [] if wall is None or wall.value is None else [Figure(LEAST_WALL, wall.value, "mm")]
-    return limit_checks(design.recipe.limits, [*figures, *more], "deg")
+    return limits_and_wall(design.recipe.limits, figures, checks, "deg")
 
 
 # --- remarks ----------------------------------------------------------------------------------------------------------

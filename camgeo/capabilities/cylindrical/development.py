@@ -169,17 +169,17 @@ def write_development(
 
     Raises ToleranceError where the tolerance cannot be held, OSError where the file cannot be written.
     """
-    from camgeo.formats.dxf import write_dxf
+    from camgeo.formats.dxf import draw_line, write_dxf
 
     recipe = design.recipe
     lines = [drawn(design, line, tolerance) for line in developed(design, request, mm)]
 
     def annotate(space: Modelspace) -> Box:
-        boxes = [_draw(space, line.of.layer, COLOURS[line.of.flank], line.points / mm) for line in lines]
+        boxes = [draw_line(space, line.of.layer, COLOURS[line.of.flank], line.points / mm) for line in lines]
         for radius in dict.fromkeys(line.of.radius for line in lines):
             layer = f"R{radius / mm:.9g}_{MARKS}"
             boxes += [
-                _draw(space, layer, 8, _mark(design, radius, at) / mm)
+                draw_line(space, layer, 8, _mark(design, radius, at) / mm)
                 for at in (recipe.period, recipe.period + OVERLAP)
             ]
         corners = np.array(boxes)
@@ -193,13 +193,3 @@ def write_development(
     write_dxf(path, [], mm=mm, name=recipe.name, about=recipe.about, remarks=notes, annotate=annotate)
     off = max(line.off for line in lines)
     return sum(len(line.points) for line in lines), Bound(off, off)
-
-
-def _draw(space: Modelspace, layer: str, colour: int, points: Array) -> Box:
-    """Add an open line on a layer of its own, in drawing units; its extremes."""
-    layers = space.doc.layers if space.doc is not None else None
-    if layers is not None and layer not in layers:
-        layers.add(layer, color=colour)
-    entity = space.add_lwpolyline([], dxfattribs={"layer": layer})
-    entity.lwpoints.values = np.column_stack((points, np.zeros((len(points), 3))))
-    return (*points.min(axis=0).tolist(), *points.max(axis=0).tolist())

@@ -16,13 +16,14 @@ from camgeo.recipe.figures import LEAST_WALL, PRESSURE_ANGLE
 from camgeo.recipe.keys import CORE
 from camgeo.recipe.machining import MANUFACTURE, MOST_RPM
 from camgeo.recipe.materials import material
+from camgeo.recipe.radii import radii_form
 from camgeo.registry.formats import FORMATS, Form
 from camgeo.registry.slot import NO_CHECK
 from camgeo.schema.errors import quote
-from camgeo.schema.fields import MOST, Field, FieldTable, Kind, OwnForm, either, length, mapping
+from camgeo.schema.fields import MOST, Field, FieldTable, Kind, OwnForm, length, mapping
 from camgeo.schema.json_schema import number_schema
 from camgeo.schema.read_scalar import read_numeric
-from camgeo.schema.yaml_source import Scalar, join
+from camgeo.schema.yaml_source import Scalar
 from kin.numeric.records import replace
 
 if TYPE_CHECKING:
@@ -32,7 +33,6 @@ if TYPE_CHECKING:
     from camgeo.schema.yaml_source import Node
 
 FLOOR_GAP = 0.5  # mm that a roller stands off the floor where the recipe does not say where it begins
-MOST_RADII = 20  # of one development
 OUTER, PITCH = "outer", "pitch"
 MOST_TURNS = 40  # of one motion
 APEX = "axis"  # of a cone whose apex is on the drum's axis
@@ -245,39 +245,6 @@ FIGURES = {
 
 LIMITS = limits_of(FIGURES)
 
-
-def _read_radii(reader: Reader, field: Field, node: Node, path: str) -> tuple[str | float, ...] | None:
-    """Read where a development is drawn: words, or radii in mm; None after a fault."""
-    found: list[str | float] = []
-    faults = len(reader.errors)
-    for i, item in enumerate(reader.items(field, node, path, MOST_RADII)):
-        if isinstance(item, Scalar) and item.text in {OUTER, PITCH}:
-            found.append(item.text)
-            continue
-        told = len(reader.errors)
-        value = read_numeric(reader, length("at", field.about), item, join(path, i))
-        if len(reader.errors) > told:
-            last = reader.errors[-1]
-            remedy = f"{last.remedy}, {OUTER} for the blank, or {PITCH} for the path of the roller's axis"
-            reader.errors[-1] = replace(last, remedy=remedy)
-        if value is not None and value not in found:
-            found.append(value)
-        elif value is not None:
-            reader.fault(item.mark, join(path, i), "the same radius twice", quote(str(value)), "leave one out")
-    return tuple(found) if len(reader.errors) == faults else None
-
-
-def _radii_schema(_: Field) -> Schema:
-    item = {"anyOf": [{"enum": [OUTER, PITCH]}, number_schema(length("", ""))]}
-    return {"type": "array", "items": item, "minItems": 1, "maxItems": MOST_RADII}
-
-
-_RADII: OwnForm[Reader] = OwnForm(
-    "a list of radii",
-    f"a list of {either((OUTER, PITCH))} and radii, such as [outer, pitch, 38]",
-    _read_radii,
-    _radii_schema,
-)
 DEVELOPMENT = "development"
 TABLES = ("motion", "flank")
 """Tables of CSV, by their words."""
@@ -385,7 +352,13 @@ FILES: dict[str, Format] = {
         "dxf",
         DEVELOPMENT,
         "the flanks and the path of the roller's axis, unrolled",
-        Field("at", Kind.OWN, "radii at which it is unrolled", default="[outer, pitch]", form=_RADII),
+        Field(
+            "at",
+            Kind.OWN,
+            "radii at which it is unrolled",
+            default="[outer, pitch]",
+            form=radii_form({OUTER: "for the blank", PITCH: "for the path of the roller's axis"}),
+        ),
         RECIPE_UNITS,
         TOLERANCE,
         contour=True,

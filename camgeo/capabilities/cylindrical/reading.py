@@ -13,6 +13,7 @@ from camgeo.common.rounding import downward
 from camgeo.motions.motion import check_filled
 from camgeo.part import bore
 from camgeo.part.keyway import FEATURE as KEYWAY
+from camgeo.part.keyway import check_round
 from camgeo.part.part import Part
 from camgeo.recipe.export import build_export, check_files
 from camgeo.recipe.figure_bounds import build_bounds, check_bounds
@@ -86,7 +87,7 @@ def _check(values: Values, reader: Reader) -> None:
     _check_guide(cam, reader)
     _check_track(cam, reader)
     _check_drive(cam.get("drive", {}), reader)
-    _check_part(part, reader)
+    check_round(part, reader)
     check_files(values, reader, FILES)
     if reader.errors:
         return
@@ -234,15 +235,6 @@ def _check_drive(drive: Values, reader: Reader) -> None:
     if "roller_material" in drive and "material" not in drive:
         remedy = "give material beside it"
         reader.fault_at("cam.drive.roller_material", "cannot stand without material", None, remedy)
-
-
-def _check_part(part: Values, reader: Reader) -> None:
-    bore.check_bore(part, reader, [KEYWAY.name] if KEYWAY.name in part else [])
-    if KEYWAY.name in part:
-        for key, why in KEYWAY.needs:
-            if key not in part:
-                reader.fault_at(f"part.{KEYWAY.name}", f"needs part.{key}: {why}", None, f"give part.{key}")
-        KEYWAY.check(part, reader)
 
 
 def _check_radii(values: Values, reader: Reader) -> None:

@@ -16,8 +16,7 @@ from camgeo.capabilities.cylindrical.filling import Run, Sweep
 from camgeo.capabilities.cylindrical.grid import sag, widest
 from camgeo.capabilities.cylindrical.patches import corners_of, line_of, patches_of
 from camgeo.capabilities.cylindrical.sheet import points_of
-from camgeo.files.errors import RegionError
-from camgeo.files.mesh import Mesh, MeshFacts
+from camgeo.files.mesh import Building, MeshFacts
 from camgeo.files.prism import rounded_loop
 from camgeo.files.triangulate import disc, region
 from camgeo.fit.bound import Bound
@@ -27,8 +26,8 @@ from kin.numeric.angles import TURN
 if TYPE_CHECKING:
     from camgeo.capabilities.cylindrical.design import DrumDesign
     from camgeo.capabilities.cylindrical.sheet import Sheet
+    from camgeo.files.mesh import Mesh
     from camgeo.files.precision import Precision
-    from camgeo.files.triangulate import Triangles
     from kin.numeric.arrays import Array, Indices
 
 ROUNDINGS = math.sqrt(1.5)  # of a point in space, in those of a plane point
@@ -42,22 +41,12 @@ class _Line(NamedTuple):
     angle: Array
 
 
-class _Body:
-    """Points and triangles of a body under construction, with the bound, mm, of its lines and cylinders."""
+class _Body(Building):
+    """A body of lines about an axis, with the bound, mm, of its lines and cylinders."""
 
     def __init__(self, precision: Precision, tolerance: float) -> None:
-        self.precision, self.tolerance = precision, tolerance
-        self.points: list[Array] = []
-        self.triangles: list[Triangles] = []
-        self.count, self.moved, self.off = 0, 0.0, 0.0
-
-    def add(self, points: Array) -> Indices:
-        """Indices of new points (n, 3), rounded as the file has them."""
-        rounded, moved = self.precision.rounded(points)
-        self.moved = max(self.moved, moved)
-        self.points.append(rounded)
-        self.count += len(points)
-        return np.arange(self.count - len(points), self.count)
+        super().__init__(precision)
+        self.tolerance, self.off = tolerance, 0.0
 
     def line(self, points: Array) -> _Line:
         """A closed line through points (n, 3), in their order."""
@@ -129,17 +118,6 @@ class _Body:
         points = np.concatenate(self.points)[row]
         return _Line(row, np.unwrap(np.arctan2(points[:, 1], points[:, 0])))
 
-    def mesh(self, *, mirrored: bool) -> Mesh:
-        """The mesh; raises RegionError where rounding makes two neighbours one."""
-        points, triangles = np.concatenate(self.points), np.concatenate(self.triangles)
-        if mirrored:
-            points = points * np.array([1.0, -1.0, 1.0]) + 0.0
-            triangles = triangles[:, ::-1]
-        mesh = Mesh(points, triangles)
-        if not bool(mesh.area_vectors.any(axis=1).all()):
-            raise RegionError(f"a triangle of the drum has no area in {self.precision.name}")
-        return mesh
-
 
 def _from_least(line: _Line) -> _Line:
     """The line from the point of its least angle in [0, 2 pi) on."""
@@ -189,7 +167,7 @@ def _closed(
     body.face(outer, bore_high, up=True)
     if bore_low is not None and bore_high is not None:
         body.wall(bore_high, bore_low)
-    mesh = body.mesh(mirrored=recipe.mirrored)
+    mesh = body.mesh("drum", mirrored=recipe.mirrored)
     off = flanks + body.moved
     precision.within("the flank", off, tolerance)
     rest = max(body.off + body.moved, bore_off)

@@ -27,7 +27,7 @@ COLOURS = "#5b8aa6", "#dfe4e8"  # of the body, and of its rollers
 def turret_actors(design: IndexDesign) -> list[Actor]:
     """Body and rollers of the turret, which stands where the polar angle is 0 and turns by its motion."""
     recipe = design.recipe
-    standing = recipe.turret.standing(recipe.roller, recipe.stops, recipe.form.blank)
+    standing = recipe.turret.standing(recipe.roller, recipe.stops)
     drawn = recipe.turret.drawn(recipe.roller, recipe.stops, recipe.sense)
     psi = recipe.start + design.law.derivatives(np.linspace(0.0, TURN, PARTS + 1), 0)[0]
     right, height = drawn.centre

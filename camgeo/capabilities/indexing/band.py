@@ -9,13 +9,12 @@ edges that no line has are halved, until each is short enough.
 from __future__ import annotations
 
 import math
-from itertools import pairwise
 from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
 from camgeo.files.errors import RegionError
-from kin.numeric.arrays import paired
+from kin.numeric.arrays import paired, runs_of
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -23,11 +22,13 @@ if TYPE_CHECKING:
     from kin.numeric.arrays import Array, Indices
 
 CROSSED = "two lines in a layer of the cam cross"
-SHARP = 1e-2  # sine of a corner of one line below which it is cut off at the end alone
+SHARP = 1e-2  # sine of a corner of one line that goes on, below which it is cut off at the end alone
 FLAT = 1e-9  # sine of a corner that is none
 ROUNDS = 60
-APART = 0.7  # of what a triangle may span: lines between two lines, and their points
+APART = 0.7  # of the height that a triangle may span: lower bands are not divided into cells
 THIN = 0.25  # of the height that a triangle may span: nearer lines have common angles
+LESS = 1.0 - 1e-9  # of what a triangle may span: a cell, so that rounding does not have it divided
+CLEAR = 0.5  # of a cell, between the cells and a line
 SAME = 1e-12  # rad
 
 
@@ -63,11 +64,15 @@ def band(x: Array, y: Array, lower: Indices, upper: Indices) -> Indices:
         product = sizes[0] * sizes[1] * sizes[2]
         return turn * min(sizes) / product if product else 0.0
 
+    def onwards(a: int, b: int, c: int) -> bool:
+        ahead = (along[b] - along[a]) * (along[c] - along[b])
+        return bool(ahead + (up[b] - up[a]) * (up[c] - up[b]) > 0.0)
+
     def cut(least: float, *, start: bool) -> None:
         while len(front) > 2:
             a, b, c = (front[1], front[0], front[2]) if start else (front[-3], front[-1], front[-2])
             alike = (a in below) == (b in below) == (c in below)
-            if not sharpest(a, b, c) > (least if alike else FLAT):
+            if not sharpest(a, b, c) > (least if alike and onwards(*front[:3] if start else front[-3:]) else FLAT):
                 return
             found.append((a, b, c))
             del front[1 if start else -2]
@@ -109,11 +114,11 @@ def filled(
     `scale` has the lengths of both units, mm. No edge but those of the lines spans more than `wide`.
     """
     (phi, h), known = places, places[0].size
-    phi, h, lines = _between(phi, h, lower, upper, wide)
-    found = [band(phi * scale[0], h * scale[1], low, high) for low, high in pairwise(lines)]
-    triangles = np.concatenate(found)
-    if triangles.shape[0] != sum(low.size + high.size - 4 for low, high in pairwise(lines)):
+    phi, h, lines, inner = _laid(phi, h, (lower, upper), wide)
+    found = [band(phi * scale[0], h * scale[1], low, high) for low, high in lines]
+    if sum(map(len, found)) != sum(low.size + high.size - 4 for low, high in lines):
         raise RegionError(CROSSED)
+    triangles = np.concatenate([*found, inner])
     for _ in range(ROUNDS):
         start, end = triangles.ravel(), np.roll(triangles, -1, axis=1).ravel()
         low, high = np.minimum(start, end), np.maximum(start, end)
@@ -133,30 +138,134 @@ def filled(
     raise RegionError("a layer of the cam is not divided finely enough")
 
 
-def _between(
-    phi: Array, h: Array, lower: Indices, upper: Indices, wide: tuple[float, float]
-) -> tuple[Array, Array, list[Indices]]:
-    """Polar angles and heights with those of lines between two lines, and the lines, rising.
+def _laid(
+    phi: Array, h: Array, lines: tuple[Indices, Indices], wide: tuple[float, float]
+) -> tuple[Array, Array, list[tuple[Indices, Indices]], Indices]:
+    """Places with those of cells laid between two lines, the pairs of lines that are left to fill, and cells in halves.
 
-    Neighbours are nowhere farther apart than a share of the height `wide`. Where two lines come near to one another, a
-    line between them has a point at each of theirs, so that it crosses none.
+    On a saddle right triangles along both of its curvatures are as large as triangles within a tolerance can be: their
+    third sides run where it is straight. What is left lies below and above the cells; where these end, one line between
+    the two goes on.
     """
-    x, y = [phi[each] for each in (lower, upper)], [h[each] for each in (lower, upper)]
+    lower, upper = lines
+    x, y = [phi[each] for each in lines], [h[each] for each in lines]
     at = np.unique(np.concatenate(x))
     gap = np.interp(at, x[1], y[1]) - np.interp(at, x[0], y[0])
+    nothing = np.zeros((0, 3), dtype=np.intp)
     if not float(gap.max()) > APART * wide[1]:
-        return phi, h, [lower, upper]
-    count = max(2, math.ceil((at[-1] - at[0]) / (APART * wide[0])))
-    even = np.linspace(at[0], at[-1], count + 1)[1:-1]
-    near = at[1:-1][gap[1:-1] < THIN * wide[1]]
-    own = np.unique(np.concatenate([even, near]))
-    own = own[np.append(np.diff(own) > SAME, True)]
-    up = 0.5 * (np.interp(own, x[0], y[0]) + np.interp(own, x[1], y[1]))
-    middle = np.concatenate([lower[:1], phi.size + np.arange(own.size), lower[-1:]])
-    phi, h = np.concatenate([phi, own]), np.concatenate([h, up])
-    phi, h, below = _between(phi, h, lower, middle, wide)
-    phi, h, above = _between(phi, h, middle, upper, wide)
-    return phi, h, [*below, *above[1:]]
+        return phi, h, [lines], nothing
+    size = LESS * wide[0], LESS * wide[1]
+    count = max(2, math.floor((at[-1] - at[0]) / size[0]))
+    even = at[0] + size[0] * np.arange(count + 1)
+    rows = [_rows(even, x[0], y[0], size[1]), -_rows(even, x[1], -y[1], size[1])]
+    blocks = _blocks(rows[0], rows[1])
+    first, below, above, inner = phi.size, [lower[:1]], [lower[:1]], [nothing]
+    begins = float(at[0])
+    for block in [*blocks, None]:
+        ends = float(at[-1]) if block is None else float(even[block.start])
+        free = (at > begins) & (at < ends)
+        own = at[free & (gap < THIN * wide[1])]
+        # beside cells a place where a line has a point, so that the way there crosses none
+        own = np.concatenate([own, even[(even > begins) & (even < ends)], at[free][:1], at[free][-1:]])
+        own = np.unique(own)
+        own = own[np.append(np.diff(own) > SAME, True)] if own.size else own
+        between = first + np.arange(own.size)
+        phi = np.concatenate([phi, own])
+        h = np.concatenate([h, 0.5 * (np.interp(own, x[0], y[0]) + np.interp(own, x[1], y[1]))])
+        first += own.size
+        below.append(between)
+        above.append(between)
+        if block is None:
+            break
+        cells = _Cells(block.start, rows[0][block], rows[1][block], first)
+        column, row = cells.places
+        phi, h = np.concatenate([phi, even[column]]), np.concatenate([h, size[1] * row])
+        first += column.size
+        below.append(cells.under)
+        above.append(cells.over)
+        inner.append(cells.triangles)
+        begins = float(even[block.stop])
+    low, high = (np.concatenate([*line, lower[-1:]]) for line in (below, above))
+    return phi, h, [(lower, low), (high, upper)], np.concatenate(inner)
+
+
+def _rows(even: Array, x: Array, y: Array, size: float) -> Indices:
+    """Numbers of the rows (n - 1,) that are by a part of one above a line over whole columns between angles (n,)."""
+    values = np.interp(even, x, y)
+    most = np.maximum(values[:-1], values[1:])
+    own = np.searchsorted(even, x, side="right") - 1
+    inside = (own >= 0) & (own < most.size)
+    np.maximum.at(most, own[inside], y[inside])
+    return np.asarray(np.ceil(most / size + CLEAR).astype(np.intp))
+
+
+def _blocks(low: Indices, high: Indices) -> list[slice]:
+    """Columns, from rows `low` to rows `high` (n,), that have cells and follow one another side by side."""
+    found: list[slice] = []
+    start, before = -1, -1
+    for k, (a, b) in enumerate(zip(low.tolist(), high.tolist(), strict=True)):
+        if start >= 0 and not min(b, int(high[before])) > max(a, int(low[before])):
+            found.append(slice(start, k))
+            start = -1
+        elif start < 0 and b > a and not (found and found[-1].stop == k):  # so that two blocks have no side in common
+            start = k
+        before = k
+    return [*found, slice(start, len(low))] if start >= 0 else found
+
+
+class _Cells:
+    """A block of cells: columns from the one numbered `start` on, each from a row `low` to a row `high` (n,).
+
+    Its places are numbered from `first` on, up each side of a column, one side after the other.
+    """
+
+    def __init__(self, start: int, low: Indices, high: Indices, first: int) -> None:
+        self.low, self.high = low.tolist(), high.tolist()
+        self.start, self.first = start, first
+        self.bottom = np.minimum(np.append(low, low[-1]), np.append(low[0], low))
+        self.size = np.maximum(np.append(high, high[-1]), np.append(high[0], high)) - self.bottom + 1
+        self.begin = first + np.cumsum(self.size) - self.size
+
+    @property
+    def places(self) -> tuple[Indices, Indices]:
+        """Numbers of the side of a column and of the row, (m,) each."""
+        own, more = runs_of(self.size)
+        return self.start + own, self.bottom[own] + more
+
+    def number(self, side: int, row: int) -> int:
+        """Number of a place."""
+        return int(self.begin[side] + row - self.bottom[side])
+
+    @property
+    def under(self) -> Indices:
+        """The lower edge of the block, places (m,) from its lower left corner to its lower right one."""
+        return np.array(self._edge(self.low), dtype=np.intp)
+
+    @property
+    def over(self) -> Indices:
+        """All its other edges, places (m,) between the same corners."""
+        n = len(self.low)
+        up = [self.number(0, row) for row in range(self.low[0], self.high[0])]
+        down = [self.number(n, row) for row in range(self.high[-1] - 1, self.low[-1] - 1, -1)]
+        return np.array([*up, *self._edge(self.high), *down], dtype=np.intp)
+
+    def _edge(self, rows: list[int]) -> list[int]:
+        found = [self.number(0, rows[0])]
+        for k, row in enumerate(rows):
+            before = rows[k - 1] if k else row
+            step = 1 if row > before else -1
+            found += [self.number(k, each) for each in range(before + step, row + step, step) if row != before]
+            found.append(self.number(k + 1, row))
+        return found
+
+    @property
+    def triangles(self) -> Indices:
+        """Both halves of each cell, (t, 3), counter-clockwise."""
+        low, high = np.array(self.low), np.array(self.high)
+        own, more = runs_of(high - low)
+        row = low[own] + more
+        a, b = (self.begin[side] + row - self.bottom[side] for side in (own, own + 1))
+        return np.concatenate([np.column_stack([a, b, b + 1]), np.column_stack([a, b + 1, a + 1])])
 
 
 def _divided(triangles: Indices, middle: Indices, x: Array, y: Array) -> Indices:

@@ -8,14 +8,7 @@ With the frame g, tau, n and the speeds P, Q of `camgeo.capabilities.indexing.fl
 
 where w a_ij = cos a B_ij - sin a A_ij - a_i w_j - a_j w_i. All are balls over a cell.
 
-A triangle whose corners lie on the surface within h1 by h2 of its parameters is off by at most
-
-    (h1^2 M11 + 2 h1 h2 M12 + h2^2 M22)/8,   M bounds of |p_ij|
-
-(D. Filip, R. Magedson, R. Markot, Surface algorithms using bounds on derivatives, CAGD 3, 1986; the corners may lie
-anywhere in the cell, as the sum of a weight times the square of a difference from the mean is a variance). Of what lies
-along the surface only the second order counts: with N bounds of |p_ij . n| and n turning by t over the cell, the
-distance from the surface is at most that of N, and `BESIDE` t times that of M.
+`camgeo.fit.facets` bounds by them how far triangles are from the surface.
 """
 
 from __future__ import annotations
@@ -25,16 +18,13 @@ from typing import TYPE_CHECKING, NamedTuple
 import numpy as np
 
 from camgeo.capabilities.indexing.forms import Pose
+from camgeo.fit.facets import facets_off, facets_width
 from kin.numeric.interval import Ball
 
 if TYPE_CHECKING:
     from camgeo.capabilities.indexing.flank import Flank, Touch
     from camgeo.capabilities.indexing.forms import Number, Vector
     from kin.numeric.arrays import Array, Indices
-
-BESIDE = 2.1  # once for the normal of the place in place of the cell's, once for the surface beside the foot
-TINY = 1e-300  # keeps a quotient finite whose parts are both 0
-STEPS = 2  # by which a cell is made narrower until it holds its tolerance
 
 
 class Second(NamedTuple):
@@ -59,21 +49,11 @@ class Bends(NamedTuple):
 
     def off(self, h1: Array, h2: Array | float) -> Array:
         """Bound of the distance of triangles from the surface, mm (n,), in cells of h1 rad by h2 mm."""
-        square = np.stack([h1 * h1, 2.0 * h1 * h2, h2 * h2 + 0.0 * h1]) / 8.0
-        turn = self.turns[0] * h1 + self.turns[1] * h2
-        bound: Array = np.sum(square * self.across, axis=0) + BESIDE * turn * np.sum(square * self.whole, axis=0)
-        return bound
+        return facets_off(self, h1, h2)
 
     def step(self, h2: Array | float, tolerance: float) -> Array:
         """Widths h1, rad (n,), of cells of h2 mm whose triangles are within a tolerance, mm; 0 where none is."""
-        rest = self.off(np.zeros_like(self.turns[0]), h2)
-        left = tolerance - rest
-        b = self.across[1] * h2
-        h1 = 8.0 * np.abs(left) / (b + np.sqrt(b * b + 8.0 * self.across[0] * np.abs(left)) + TINY)
-        h1 = np.minimum(h1, 1.0)
-        for _ in range(STEPS):  # above its value at 0 the bound is convex, so that it falls by the share at least
-            h1 = h1 * np.minimum(1.0, left / (self.off(h1, h2) - rest + TINY))
-        return np.where(left > 0.0, h1, 0.0)
+        return facets_width(self, h2, tolerance)
 
     def most(self, blocks: int) -> Bends:
         """Bounds over so many blocks of cells together, (n / blocks,) of (blocks, n / blocks)."""

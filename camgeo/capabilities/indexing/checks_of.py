@@ -8,17 +8,20 @@ import numpy as np
 
 from camgeo.capabilities.indexing.figures import bears
 from camgeo.capabilities.indexing.keys import LENGTH, RIB
-from camgeo.measures.placed import Figure, figure_check, limit_checks
+from camgeo.measures.placed import figure_check, limits_and_wall
 from camgeo.measures.rule_remark import RuleRemark
 from camgeo.recipe.figures import LEAST_WALL, PRESSURE_ANGLE
-from kin.numeric.check import Check, failed
+from kin.numeric.check import Check
+from kin.numeric.records import replace
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
     from camgeo.capabilities.indexing.design import IndexDesign
+    from camgeo.measures.placed import Figure
 
 STEEP = 45.0  # degrees, by rule of thumb for a follower that swings
+SHORTEST = 0.15  # of the length of a roller, on which one has to bear at least: the judge asks in layers
 ROUNDING = 1e-9  # mm: a wall that is less by no more holds
 
 
@@ -26,12 +29,13 @@ def design_checks(design: IndexDesign, figures: Sequence[Figure]) -> list[Check]
     """Checks that need no file; a figure that nothing limits is reported without a limit."""
     known = {figure.name: figure for figure in figures}
     checks = [figure_check(PRESSURE_ANGLE, known[PRESSURE_ANGLE], None, "at_most", at_unit="deg")]
-    length = figure_check(LENGTH, known[LENGTH], 0.0, "at_least", at_unit="deg")
-    if known[LENGTH].value > 0.0:
-        checks.append(length)
-    else:
-        why = "no roller bears on a flank there, and the turret is free: give more stops, or a longer cam"
-        checks.append(Check(**{**vars(failed(LENGTH, why, unit="mm", limit=0.0)), "at": length.at}))
+    roller = design.recipe.roller
+    length = figure_check(LENGTH, known[LENGTH], SHORTEST * (roller.outer - roller.inner), "at_least", at_unit="deg")
+    if not length.ok:
+        free = "no roller bears on a flank there, and the turret is free"
+        why = free if not known[LENGTH].value > 0.0 else "a roller bears on a flank with little more than its rim there"
+        length = replace(length, detail=f"{why}: give more stops, or a longer cam")
+    checks.append(length)
     checks.append(figure_check(RIB, known[RIB], 0.0, "at_least", at_unit="deg"))
     wall, where = min(walls(design))
     least = design.recipe.part.wall
@@ -41,7 +45,7 @@ def design_checks(design: IndexDesign, figures: Sequence[Figure]) -> list[Check]
 
 def walls(design: IndexDesign) -> list[tuple[float, str]]:
     """Walls of a cam, mm, each with what it stands between; without a bore its core where that is thinnest."""
-    core = design.recipe.turret.core(design.recipe.form.floor)
+    core = design.recipe.form.core
     if design.bore is None:
         return [(2.0 * core, "across the core within the floor")]
     reach = float(np.hypot(*design.bore.outline.points.T).max())
@@ -50,9 +54,7 @@ def walls(design: IndexDesign) -> list[tuple[float, str]]:
 
 def limits_held(design: IndexDesign, figures: Sequence[Figure], checks: Sequence[Check]) -> list[Check]:
     """Checks of the figures that the recipe limits, those of the least wall among them."""
-    wall = next((check for check in checks if check.name == LEAST_WALL and check.value is not None), None)
-    more = [] if wall is None or wall.value is None else [Figure(LEAST_WALL, wall.value, "mm")]
-    return limit_checks(design.recipe.limits, [*figures, *more], "deg")
+    return limits_and_wall(design.recipe.limits, figures, checks, "deg")
 
 
 def remarks_on(design: IndexDesign, figures: Sequence[Figure]) -> tuple[RuleRemark, ...]:

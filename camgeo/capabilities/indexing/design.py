@@ -36,9 +36,9 @@ class IndexDesign:
     def flanks(self) -> dict[str, Flank]:
         """Flanks by name: `lower` with the metal below, `upper` with the metal above, of its own larger roller."""
         recipe = self.recipe
-        sizes = {"lower": recipe.roller.radius, "upper": recipe.roller.radius + recipe.clearance}
-        sides = {"lower": -1, "upper": 1}
-        return {name: Flank(recipe.form, self.law, recipe.start, sizes[name], sides[name]) for name in sizes}
+        sizes = (recipe.roller.radius, -1), (recipe.roller.radius + recipe.clearance, 1)
+        flanks = (Flank(recipe.form, self.law, recipe.start, *each) for each in sizes)
+        return {flank.name: flank for flank in flanks}
 
     def resized(self, radius: float) -> IndexDesign:
         """The same cam for rollers of another radius, mm."""
@@ -47,9 +47,9 @@ class IndexDesign:
 
     def shortened(self, length: float) -> IndexDesign:
         """The same cam of another length, mm, with the turret's axis in its middle."""
-        recipe, height = self.recipe, 0.5 * length
-        form, turret = replace(recipe.form, length=length, height=height), replace(recipe.turret, height=height)
-        return replace(self, recipe=replace(recipe, form=form, turret=turret))
+        recipe, turret = self.recipe, self.recipe.turret
+        form = replace(turret.form, length=length, height=0.5 * length)
+        return replace(self, recipe=replace(recipe, turret=replace(turret, form=form)))
 
     @property
     def largest(self) -> float:
@@ -58,8 +58,8 @@ class IndexDesign:
 
     @property
     def spanned(self) -> tuple[float, float]:
-        """Angles of the turret, rad, between which a roller is in touch with the cam."""
-        return self.recipe.turret.spanned(self.largest, self.recipe.form.blank, self.recipe.length)
+        """Angles on the turret, rad, between which a roller of either flank touches the cam."""
+        return self.recipe.form.spanned(self.largest)
 
     @cached_property
     def turns(self) -> range:

@@ -1,11 +1,12 @@
 """Developments of a barrel: its flanks, unrolled at a radius, as a drawing whose layers name it.
 
-A line holds for its radius alone. It runs from one end face to the other, over more than a turn, and is drawn in pieces
+A line holds for its radius alone. It runs from one end face to the other, over more than a turn. It is drawn in pieces
 of one turn, from x = 0 to the circumference.
 
-On a cylinder a flank is p(theta, rho(theta)). With p_ij of `camgeo.capabilities.indexing.bends`, the sum
-q = p_11 + 2 p_12 rho' + p_22 rho'^2 and the unit vector o away from the cam's axis, the second derivative of the
-unrolled line is that part of q + p_2 rho'' which is square to o, where p_2.o rho'' = -r phi'^2 - q.o.
+On a cylinder a flank is p(theta, rho(theta)). Let p_ij be the derivatives of `camgeo.capabilities.indexing.bends`, o
+the unit vector away from the cam's axis, and q = p_11 + 2 p_12 rho' + p_22 rho'^2. The second derivative of the
+unrolled line is then the part of q + p_2 rho'' that is square to o, where p_2.o rho'' = -r phi'^2 - q.o. It is bounded
+over stretches of the shaft angle, so that the distance of the chords from the line is proved.
 """
 
 from __future__ import annotations
@@ -42,6 +43,7 @@ WIDEN, GROW = 1e-9, 1.5  # mm by which places along a roller are enclosed at fir
 SETTLE = 12  # rounds of enclosing
 WIDEST = TURN / 36.0  # rad between two points, however little a line bends
 MOST_POINTS = 2_000_000  # of one line
+FLANKS: tuple[Literal["lower", "upper"], ...] = ("lower", "upper")
 COLOURS = {"lower": 5, "upper": 1}  # of AutoCAD, by flank
 MARKS = "TURN"  # end of the name of the layer whose marks enclose a turn
 
@@ -126,7 +128,8 @@ def unrolled_bends(flank: Flank, look: Array, radius: float) -> Array:
 def _enclosed(flank: Flank, cells: tuple[Array, Array], radius: float) -> Ball:
     """Balls of the distances along the roller at which a cylinder is touched over cells; infinite where not proved.
 
-    Within a ball the distance moves no faster than its derivative there; where that does not lead out, it stays inside.
+    Within a ball the distance changes no faster than the greatest derivative there. Where that is too slow to reach the
+    edge of the ball within the cell, the distance stays inside.
     """
     middle, half = 0.5 * (cells[0] + cells[1]), 0.5 * (cells[1] - cells[0])
     pose = pose_over(flank, cells)
@@ -152,11 +155,10 @@ def _enclosed(flank: Flank, cells: tuple[Array, Array], radius: float) -> Ball:
 def developed(design: IndexDesign, request: FileRequest, mm: float) -> list[Developed]:
     """Lines of a requested development, by their layers; `mm` is the drawing's unit."""
     chosen = request.own.get("at", (OUTER,))
-    names: tuple[Literal["lower", "upper"], ...] = ("lower", "upper")
     found = []
     for each in chosen:
         radius = design.recipe.form.blank if isinstance(each, str) else each
-        found += [Developed(f"R{radius / mm:.9g}_{name.upper()}", radius, name) for name in names]
+        found += [Developed(f"R{radius / mm:.9g}_{name.upper()}", radius, name) for name in FLANKS]
     return list({line.layer: line for line in found}.values())
 
 
@@ -189,8 +191,7 @@ def _by_turns(points: Array, turn: float) -> list[Array]:
 def unrolled(design: IndexDesign, tolerance: float) -> list[Array]:
     """Lines (n, 2), mm, of the flanks on the blank, with the blank's ends and the marks of a turn."""
     radius, length = design.recipe.form.blank, design.recipe.length
-    names: tuple[Literal["lower", "upper"], ...] = ("lower", "upper")
-    pieces = [piece for name in names for piece in drawn(design, Developed("", radius, name), tolerance).pieces]
+    pieces = [piece for name in FLANKS for piece in drawn(design, Developed("", radius, name), tolerance).pieces]
     turn = design.recipe.sense * TURN * radius
     edges = [np.array([[0.0, z], [turn, z]]) for z in (0.0, length)]
     return [*pieces, *edges, *(_mark(at, length) for at in (0.0, turn))]
@@ -207,19 +208,21 @@ def write_development(
 
     Raises ToleranceError where the tolerance cannot be held, OSError where the file cannot be written.
     """
-    from camgeo.formats.dxf import write_dxf
+    from camgeo.formats.dxf import draw_line, write_dxf
 
     recipe = design.recipe
     lines = [drawn(design, line, tolerance) for line in developed(design, request, mm)]
 
     def annotate(space: Modelspace) -> Box:
         boxes = [
-            _draw(space, line.of.layer, COLOURS[line.of.flank], piece / mm) for line in lines for piece in line.pieces
+            draw_line(space, line.of.layer, COLOURS[line.of.flank], piece / mm)
+            for line in lines
+            for piece in line.pieces
         ]
         for radius in dict.fromkeys(line.of.radius for line in lines):
             layer = f"R{radius / mm:.9g}_{MARKS}"
             turn = recipe.sense * TURN * radius
-            boxes += [_draw(space, layer, 8, _mark(at, recipe.length) / mm) for at in (0.0, turn)]
+            boxes += [draw_line(space, layer, 8, _mark(at, recipe.length) / mm) for at in (0.0, turn)]
         corners = np.array(boxes)
         return (*corners[:, :2].min(axis=0).tolist(), *corners[:, 2:].max(axis=0).tolist())
 
@@ -231,13 +234,3 @@ def write_development(
     write_dxf(path, [], mm=mm, name=recipe.name, about=recipe.about, remarks=notes, annotate=annotate)
     off = max(line.off for line in lines)
     return sum(len(piece) for line in lines for piece in line.pieces), Bound(off, off)
-
-
-def _draw(space: Modelspace, layer: str, colour: int, points: Array) -> Box:
-    """Add an open line on a layer of its own, in drawing units; its extremes."""
-    layers = space.doc.layers if space.doc is not None else None
-    if layers is not None and layer not in layers:
-        layers.add(layer, color=colour)
-    entity = space.add_lwpolyline([], dxfattribs={"layer": layer})
-    entity.lwpoints.values = np.column_stack((points, np.zeros((len(points), 3))))
-    return (*points.min(axis=0).tolist(), *points.max(axis=0).tolist())

@@ -1,4 +1,4 @@
-"""Rollers that are in touch with the cam at shaft angles: along which part of each the flanks bear, and how."""
+"""Lines of contact between rollers and flanks at shaft angles: where they begin and end, and how they bear."""
 
 from __future__ import annotations
 
@@ -27,7 +27,7 @@ class Engaged:
 
     @cached_property
     def angles(self) -> Array:
-        """Angles (n, j), rad, at which the roller of no turn stands as each of the rollers does."""
+        """Shaft angles (n, j), rad, at which the roller that stands at the start at 0 is where each roller is."""
         return self.theta[:, None] + TURN * np.array(self.design.turns)
 
     @cached_property

@@ -1,4 +1,8 @@
-"""Figures of an indexing cam, each with its shaft angle: of the exact flanks, of the turret in time, of its load."""
+"""Figures of an indexing cam, each with its shaft angle: of the exact flanks, of the turret in time, of its load.
+
+Figures of flanks and loads are sampled over the turn, and narrowed about the greatest sample. Velocity and acceleration
+are proved extremes of the motion.
+"""
 
 from __future__ import annotations
 
@@ -237,5 +241,4 @@ def volume(design: IndexDesign) -> float:
     node, weight = np.polynomial.legendre.leggauss(LAYERS)
     taken = [removed(design, w) for w in (low + 0.5 * (high - low) * (node + 1.0)).tolist()]
     bore = 0.0 if design.bore is None else design.bore.outline.area
-    whole = recipe.turret.whole(recipe.form.blank, recipe.length)
-    return whole - bore * recipe.length - 0.5 * (high - low) * float(weight @ taken)
+    return recipe.form.volume - bore * recipe.length - 0.5 * (high - low) * float(weight @ taken)

@@ -1,13 +1,13 @@
 """The exact flank of an indexing cam, in closed form: what one roller leaves, and where it is in any layer.
 
-A point of a roller's axis moves against the cam by A e_t + B m (`camgeo.capabilities.indexing.forms`), and what the
-roller leaves is where its normals are square to that (F. L. Litvin, Gear Geometry and Applied Theory, 1994, equation of
-meshing): with w = hypot(A, B) and side -1 with the metal below, 1 with the metal above
+A point of a roller's axis moves against the cam by A e_t + B m (`camgeo.capabilities.indexing.forms`). The roller
+leaves the places at which its normals are square to that motion (F. L. Litvin, Gear Geometry and Applied Theory, 1994,
+equation of meshing). With w = hypot(A, B) and side -1 with the metal below, 1 with the metal above
 
     sin a = B/w,  cos a = A/w,   tau = cos a e_t + sin a m,   n = -sin a e_t + cos a m,   p = axis + side R n
 
-By theta (1) and rho (2) the frame g, tau, n turns by n_1 = T tau + G g, n_2 = -a_2 tau, tau_1 = -T n + K g and
-g_1 = -K tau - G n, where T = tilt - a_1 and G = -w a_2, so that
+The index 1 is a derivative by theta, 2 by rho. The frame g, tau, n turns by n_1 = T tau + G g, n_2 = -a_2 tau,
+tau_1 = -T n + K g and g_1 = -K tau - G n, where T = tilt - a_1 and G = -w a_2. It follows that
 
     p_1 = P tau + Q g,  P = w + side R T,  Q = slip + side R G;     p_2 = g - side R a_2 tau
 
@@ -60,7 +60,7 @@ class Contact(NamedTuple):
 
 
 class Touch(NamedTuple):
-    """First derivatives at contacts, arrays or balls: what `camgeo.capabilities.indexing.flank` calls so."""
+    """First derivatives at contacts, arrays or balls, by the letters of the docstring of this module."""
 
     sine: Number
     cosine: Number
@@ -89,6 +89,11 @@ class Flank:
     start: float
     radius: float
     side: int
+
+    @property
+    def name(self) -> str:
+        """`lower` with the metal below the roller, `upper` with the metal above it."""
+        return "lower" if self.side < 0 else "upper"
 
     def pose(self, theta: Array, at: Side = 1) -> Pose:
         """The turret at shaft angles (n,), rad; at a break of one side."""
@@ -172,14 +177,6 @@ class Flank:
         rho[open_] = np.nan
         return rho
 
-    def normal(self, theta: Array, rho: Array) -> Array:
-        """Normals (n, 3) of the metal, outwards, at shaft angles theta and distances rho along the roller, (n,)."""
-        pose = self.pose(theta)
-        touch = self.touch(pose, rho)
-        x, y, z = self.form.axes(pose, touch.sine, touch.cosine)[2]
-        cosine, sine = np.cos(theta), np.sin(theta)
-        return -self.side * np.column_stack([x * cosine - y * sine, x * sine + y * cosine, z])
-
     def pressure(self, theta: Array, rho: Array, at: Side = 1) -> Array:
         """Pressure angle (n,), rad, at distances rho along the roller: between the force, seen along it, and its way.
 
@@ -195,7 +192,3 @@ class Flank:
         touch = self.touch(self.pose(theta, at), rho)
         part = 1.0 + (self.radius * touch.a2) ** 2
         return np.asarray(touch.w * part / (self.radius * touch.regular))
-
-    def regularity(self, theta: Array, rho: Array, at: Side = 1) -> Array:
-        """D, mm (n,), at shaft angles theta and distances rho along the roller, (n,)."""
-        return np.asarray(self.touch(self.pose(theta, at), rho).regular)

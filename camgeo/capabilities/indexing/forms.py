@@ -7,8 +7,8 @@ rho, and m is square to it and to e_t:
     barrel    g = e_r, m = k;   axis rho e_r + y e_t + z k,   y = offset - s l cos psi,   z = H + l sin psi
     globoid   g = -cos psi e_r + sin psi k, m = sin psi e_r + cos psi k;   axis C e_r + H k + rho g
 
-A point of the axis moves against the cam by A e_t + B m, and by `slip` along g, per radian (the equation of meshing is
-solved in `camgeo.capabilities.indexing.flank`):
+By the radian of theta a point of the axis moves against the cam by A e_t + B m, and by `slip` along g. The equation of
+meshing is solved in `camgeo.capabilities.indexing.flank`.
 
     barrel    A = rho + y',         B = z',         slip = -y
     globoid   A = C - rho cos psi,  B = rho psi',   slip = 0
@@ -25,18 +25,18 @@ from typing import TYPE_CHECKING, Any, NamedTuple, TypeAlias
 
 import numpy as np
 
+from camgeo.fit.facets import BESIDE
 from kin.numeric.interval import Ball, atan2, sin_cos
 from kin.numeric.records import dataclass
 
 if TYPE_CHECKING:
     from typing import Literal
 
-    from kin.numeric.arrays import Array, Indices, Mask
+    from kin.numeric.arrays import Array, Indices
 
-MARGIN = 0.1  # rad
+QUARTER = 0.5 * math.pi
 WIDEST = math.pi / 3.0  # polar angle that a triangle may span, however coarse
 LESS = 0.95  # times the span of a triangle that is too wide
-BESIDE = 2.1  # turns of the normal that count, as in `camgeo.capabilities.indexing.bends`
 Number: TypeAlias = Any
 """An array, or balls."""
 Vector: TypeAlias = tuple[Number, Number, Number]
@@ -198,6 +198,10 @@ class Barrel:
         del w
         return 1.0
 
+    def beside(self, w: float, z: Array) -> Array:
+        """Distances from the cam's axis, mm (n,), of a layer w, mm, at heights over the lower face, mm (n,)."""
+        return np.full_like(z, w)
+
     def rim(self, w: float) -> float:
         """Greatest distance from the cam's axis, mm, of a layer w, mm, between the end faces."""
         return w
@@ -207,22 +211,27 @@ class Barrel:
         del radius
         return 0.0, self.radius
 
-    def passing(self, radius: float) -> tuple[float, float]:
-        """Angles on the turret, rad, between which a roller of a radius, mm, may touch the cam, and a little more."""
-        low, high = (-self.height - radius) / self.pitch, (self.length - self.height + radius) / self.pitch
-        quarter = 0.5 * math.pi
-        return (
-            max(math.asin(max(low, -1.0)) - MARGIN, -quarter),
-            min(math.asin(min(high, 1.0)) + MARGIN, quarter),
-        )
+    def spanned(self, radius: float) -> tuple[float, float]:
+        """Angles on the turret, rad, between which a roller of a radius, mm, touches the cam; a quarter turn at most.
 
-    def meets(self, psi: Array, radius: float) -> Mask:
-        """Whether a roller of a radius, mm, at angles on the turret (n,), rad, is within the box about the cam (n,)."""
-        y = self.offset - self.side * self.pitch * np.cos(psi)
-        z = self.height + self.pitch * np.sin(psi)
-        beside = np.maximum(np.abs(y) - self.radius, 0.0)
-        above = np.maximum(np.maximum(z - self.length, -z), 0.0)
-        return np.asarray(np.hypot(beside, above) < radius)
+        Beyond them the whole roller is past an end face.
+        """
+        low, high = (-self.height - radius) / self.pitch, (self.length - self.height + radius) / self.pitch
+        return math.asin(max(low, -1.0)), math.asin(min(high, 1.0))
+
+    @property
+    def core(self) -> float:
+        """Radius, mm, of what is left within the floor where that is thinnest: the floor's own."""
+        return self.floor
+
+    @property
+    def volume(self) -> float:
+        """Volume, mm^3, of the blank: a cylinder."""
+        return math.pi * self.radius * self.radius * self.length
+
+    def area(self, w: float, h: Array) -> Array:
+        """Area, mm^2 by the radian of the polar angle (n,), below heights h in a layer w, mm, but for a constant."""
+        return np.asarray(w * h)
 
     def off(self, w: float, turn: Array, h: Array) -> Array:
         """Bound, mm (n,), of the distance from a layer of triangles that span a polar angle, rad, and a height (n,)."""
@@ -343,6 +352,10 @@ class Globoid:
         """Length, mm, of a unit of h in a layer w, mm."""
         return w
 
+    def beside(self, w: float, z: Array) -> Array:
+        """Distances from the cam's axis, mm (n,), of a layer w, mm, at heights over the lower face, mm (n,)."""
+        return np.asarray(self.distance - np.sqrt(w * w - (z - self.height) ** 2))
+
     def rim(self, w: float) -> float:
         """Greatest distance from the cam's axis, mm, of a layer w, mm, between the end faces."""
         far = max(self.height, self.length - self.height)
@@ -352,20 +365,39 @@ class Globoid:
         """Least and greatest distance rho, mm, at which a roller of a radius may touch the metal above the floor."""
         return max(self.radius - radius, 0.0), self.radius + self.depth + radius
 
-    def passing(self, radius: float) -> tuple[float, float]:
-        """Angles on the turret, rad, between which a roller of a radius, mm, may touch the cam, and a little more."""
-        least = min(self.radius, self.radius + self.depth) - radius
-        low, high = -self.height / least, (self.length - self.height) / least
-        more, quarter = MARGIN + math.asin(min(radius / least, 1.0)), 0.5 * math.pi
+    def spanned(self, radius: float) -> tuple[float, float]:
+        """Angles on the turret, rad, between which a roller of a radius, mm, touches the cam; a quarter turn at most.
+
+        Seen along the turret's axis, no metal lies nearer to it than the throat. So the angle between a point that a
+        roller touches and the roller's axis is at most asin(radius/throat).
+        """
+        low, high = -self.height / self.radius, (self.length - self.height) / self.radius
+        beside = math.asin(min(radius / self.radius, 1.0))
         return (
-            max(math.asin(max(low, -1.0)) - more, -quarter),
-            min(math.asin(min(high, 1.0)) + more, quarter),
+            max(math.asin(max(low, -1.0)) - beside, -QUARTER),
+            min(math.asin(min(high, 1.0)) + beside, QUARTER),
         )
 
-    def meets(self, psi: Array, radius: float) -> Mask:
-        """Whether a roller at angles on the turret (n,), rad, is on the cam's side of it (n,)."""
-        del radius
-        return np.asarray(np.cos(psi) > 0.0)
+    @property
+    def core(self) -> float:
+        """Radius, mm, of what is left within the floor where that is thinnest: in the plane through both axes."""
+        return self.distance - self.floor
+
+    @property
+    def volume(self) -> float:
+        """Volume, mm^3, of the blank: between two planes, hollowed out by a torus."""
+        blank, c = self.radius, self.distance
+
+        def upto(z: float) -> float:
+            root = math.sqrt(blank * blank - z * z)
+            half = 0.5 * (z * root + blank * blank * math.asin(z / blank))
+            return math.pi * ((c * c + blank * blank) * z - z**3 / 3.0 - 2.0 * c * half)
+
+        return upto(self.length - self.height) - upto(-self.height)
+
+    def area(self, w: float, h: Array) -> Array:
+        """Area, mm^2 by the radian of the polar angle (n,), below heights h in a layer w, mm: w (C h - w sin h)."""
+        return np.asarray(w * (self.distance * h - w * np.sin(h)))
 
     def off(self, w: float, turn: Array, h: Array) -> Array:
         """Bound, mm (n,), of the distance from a layer of triangles that span a polar angle, rad, and a height (n,).

@@ -38,14 +38,13 @@ class Drive:
 class IndexRecipe(ShaftOrder):
     """A recipe of an indexing cam; lengths in mm, angles in rad.
 
-    `form` is the blank, and `turret` leads the rollers about it. There are `stops` equal rollers; one of them stands at
-    the angle `start` where the motion begins. The roller of the upper flank is larger by `clearance`, smaller
-    by a preload where that is below 0. The thickness of `part` is the cam's length.
+    `turret` leads `stops` equal rollers about the blank. One of them stands at the angle `start` where the motion
+    begins. The roller of the upper flank is larger by `clearance`, smaller by a preload where that is below 0. The
+    thickness of `part` is the cam's length.
     """
 
     root: ClassVar[str] = "indexing"
 
-    form: Barrel | Globoid
     turret: Turret
     roller: Roller
     stops: int
@@ -57,6 +56,11 @@ class IndexRecipe(ShaftOrder):
     limits: tuple[Bound, ...] = ()
 
     __repr__ = ShaftOrder.__repr__
+
+    @property
+    def form(self) -> Barrel | Globoid:
+        """The blank and its track."""
+        return self.turret.form
 
     @property
     def advance(self) -> float:

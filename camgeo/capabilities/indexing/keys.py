@@ -16,24 +16,17 @@ from camgeo.recipe.figures import LEAST_WALL, PRESSURE_ANGLE
 from camgeo.recipe.keys import CORE
 from camgeo.recipe.machining import MOST_RPM
 from camgeo.recipe.materials import material
+from camgeo.recipe.radii import radii_form
 from camgeo.registry.formats import FORMATS, Form
 from camgeo.registry.slot import NO_CHECK
-from camgeo.schema.errors import quote
-from camgeo.schema.fields import MOST, Field, FieldTable, Kind, OwnForm, length, mapping
-from camgeo.schema.json_schema import number_schema
-from camgeo.schema.read_scalar import read_numeric
-from camgeo.schema.yaml_source import Scalar, join
+from camgeo.schema.fields import MOST, Field, FieldTable, Kind, length, mapping
 from kin.numeric.records import replace
 
 if TYPE_CHECKING:
     from camgeo.registry.formats import Format
-    from camgeo.schema.fields import Schema
-    from camgeo.schema.reader import Reader
-    from camgeo.schema.yaml_source import Node
 
 FLOOR_GAP = 0.5  # mm that a roller stands off the floor where the recipe does not say where it ends
 LEAST_STOPS, MOST_STOPS = 2, 60
-MOST_RADII = 20  # of one development
 MOST_INERTIA = 1e6  # kg m^2
 OUTER = "outer"
 MIDDLE, INNER, OUTSIDE, ANY = (f"{PRESSURE_ANGLE}-{word}" for word in ("middle", "inner", "outer", "any"))
@@ -46,7 +39,7 @@ BARREL = mapping(
     Field(
         "offset",
         Kind.LENGTH,
-        "distance of the turret's axis from that radius, the way the contact runs on a turning cam",
+        "distance of the turret's axis from that radius, above 0 against the way the cam's surface moves",
         default="half of turret.radius times 1 + cos(180°/stops); below 0 of a leading turret",
         at_least=-MOST,
         at_most=MOST,
@@ -80,7 +73,11 @@ TURRET = Field(
                 "where a roller begins to bear: of a barrel from its axis, of a globoid from the turret's",
                 default="a barrel's floor and 0.5 mm; radius of a globoid's throat",
             ),
-            length("to", "where it ends", default="radius of a barrel's blank; a globoid's floor less 0.5 mm"),
+            length(
+                "to",
+                "where it ends",
+                default="radius of a barrel's blank; where the end of a globoid's roller stands 0.5 mm off the floor",
+            ),
             Field(
                 "height",
                 Kind.LENGTH,
@@ -107,12 +104,12 @@ TURRET = Field(
             Field(
                 "clearance",
                 Kind.LENGTH,
-                "play of a roller, on the upper flank and square to it",
+                "clearance of a roller in the groove, square to the upper flank",
                 default="0",
                 at_least=0,
                 at_most=MOST,
             ),
-            length("preload", "by how much the upper flank is nearer than a roller without play leaves it"),
+            length("preload", "by how much the roller of the upper flank is smaller: it is pressed on the rib"),
         )
     ),
 )
@@ -136,7 +133,7 @@ CAM = FieldTable(
         Field("kind", Kind.CHOICE, "a cam that advances a turret", required=True, choices=("indexing",)),
         BARREL,
         GLOBOID,
-        length("depth", "depth of the track below the blank", required=True),
+        length("depth", "depth of the groove below the blank", required=True),
         TURRET,
         motion_field(
             "motion",
@@ -152,7 +149,7 @@ CAM = FieldTable(
 PART = replace(
     mapping(
         "part",
-        "the cam beside its track; angles from the radius that faces the turret at shaft angle 0",
+        "the cam beside its groove; angles from the radius that faces the turret at shaft angle 0",
         length("length", "length of the cam along its axis", required=True),
         bore.FIELD,
         KEYWAY.field,
@@ -175,7 +172,7 @@ FIGURES = {
     MOST_ENGAGED: ("greatest number of rollers that a flank bears on at once", Kind.NUMBER),
     RIB: ("least thickness of the rib between two rollers, across the turret's radius", Kind.LENGTH),
     "play": ("greatest play of the turret, to first order in the clearance, degrees", Kind.ANGLE),
-    "mating-radius": ("least radius, of both bodies together, across a line of contact", Kind.LENGTH),
+    "mating-radius": ("least equivalent radius of curvature of cam and roller, across a line of contact", Kind.LENGTH),
     "velocity": ("greatest velocity of the turret, degrees a second", Kind.ANGLE),
     "acceleration": ("greatest acceleration of the turret, degrees a second squared", Kind.ANGLE),
     "turret-torque": ("greatest torque on the turret, of load and inertia, N m", Kind.NUMBER),
@@ -189,35 +186,6 @@ FIGURES = {
 
 LIMITS = limits_of(FIGURES)
 
-
-def _read_radii(reader: Reader, field: Field, node: Node, path: str) -> tuple[str | float, ...] | None:
-    """Read where a development is drawn: words, or radii in mm; None after a fault."""
-    found: list[str | float] = []
-    faults = len(reader.errors)
-    for i, item in enumerate(reader.items(field, node, path, MOST_RADII)):
-        if isinstance(item, Scalar) and item.text == OUTER:
-            found.append(item.text)
-            continue
-        told = len(reader.errors)
-        value = read_numeric(reader, length("at", field.about), item, join(path, i))
-        if len(reader.errors) > told:
-            last = reader.errors[-1]
-            reader.errors[-1] = replace(last, remedy=f"{last.remedy}, or {OUTER} for the blank")
-        if value is not None and value not in found:
-            found.append(value)
-        elif value is not None:
-            reader.fault(item.mark, join(path, i), "the same radius twice", quote(str(value)), "leave one out")
-    return tuple(found) if len(reader.errors) == faults else None
-
-
-def _radii_schema(_: Field) -> Schema:
-    item = {"anyOf": [{"enum": [OUTER]}, number_schema(length("", ""))]}
-    return {"type": "array", "items": item, "minItems": 1, "maxItems": MOST_RADII}
-
-
-_RADII: OwnForm[Reader] = OwnForm(
-    "a list of radii", f"a list of {OUTER} and radii, such as [{OUTER}, 38]", _read_radii, _radii_schema
-)
 DEVELOPMENT = "development"
 TABLE = "motion"
 
@@ -228,7 +196,13 @@ def _mesh(name: str, *options: Field) -> Format:
 
 def _development() -> Format:
     form = Field("as", Kind.CHOICE, "the flanks, unrolled", default=DEVELOPMENT, choices=(DEVELOPMENT,))
-    at = Field("at", Kind.OWN, "radii at which they are unrolled", default=f"[{OUTER}]", form=_RADII)
+    at = Field(
+        "at",
+        Kind.OWN,
+        "radii at which they are unrolled",
+        default=f"[{OUTER}]",
+        form=radii_form({OUTER: "for the blank"}),
+    )
     return replace(
         FORMATS["dxf"],
         options=FieldTable((form, at, RECIPE_UNITS, TOLERANCE)),

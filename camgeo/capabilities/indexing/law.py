@@ -14,7 +14,7 @@ from kin.numeric.records import dataclass
 
 if TYPE_CHECKING:
     from kin.law.piecewise import Side
-    from kin.law.segment import Series, Stretch
+    from kin.law.segment import Stretch
     from kin.numeric.arrays import Array
 
 
@@ -23,7 +23,7 @@ class IndexLaw:
     """S, rad, over the shaft angle, rad, any real number: S(theta + 2 pi) = S(theta) + `advance`.
 
     `turn` is S over [0, 2 pi], from 0 to `advance`. `turns` are the first and the last whole turn of the stretches that
-    `on` and `enclosure` know; `derivatives` knows all angles.
+    `enclosure` knows; `derivatives` knows all angles.
     """
 
     turn: Piecewise
@@ -50,10 +50,6 @@ class IndexLaw:
         """
         return self.unrolled.enclosure(lower, upper, order)
 
-    def on(self, t: Series, side: Side = 1) -> Series:
-        """Apply S to a jet or a ball jet; raises ValueError for angles outside the turns of this law."""
-        return self.unrolled.on(t, side)
-
     @cached_property
     def unrolled(self) -> Piecewise:
         """S over all `turns`, without a period; a dwell that runs over the end of a turn is one stretch."""
@@ -79,8 +75,6 @@ class IndexLaw:
             return np.asarray(inner)
         return np.append(0.0, inner)
 
-    @property
-    def knots(self) -> Array:
-        """Angles (b + 1,), rad, between which the motion has no break: one turn, rising."""
-        first = self.breaks if self.breaks.size else np.zeros(1)
-        return np.append(first, first[0] + TURN)
+    def breaks_over(self, first: int, last: int) -> Array:
+        """Those angles (k,) in whole turns of the shaft, from the first to the last of them, rad, rising."""
+        return np.asarray((self.breaks + TURN * np.arange(first, last + 1)[:, None]).ravel())

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from camgeo.api.check import Check, Figure, Figures
+from camgeo.api.check import Check, Figures
 from camgeo.api.log import stage_reporter
 from camgeo.api.own_kind import KindDesign
 from camgeo.capabilities.indexing.checks_of import design_checks, limits_held
@@ -20,7 +20,6 @@ from camgeo.common.clock import Clock
 from camgeo.common.errors import CallError
 from camgeo.common.rounding import downward
 from camgeo.curve.curve import CurveError
-from camgeo.measures.units import in_units
 from camgeo.recipe.figures import LEAST_WALL, PRESSURE_ANGLE
 from camgeo.synthesis.expected_checks import Foreseen
 from kin.numeric.records import dataclass, field
@@ -56,13 +55,7 @@ class IndexingCam(KindDesign):
     @cached_property
     def figures(self) -> Figures:
         """The figures of the cam by name, each with its shaft angle, degrees."""
-        found = {}
-        for figure in figures_of(self._design):
-            value, unit = in_units(self.recipe, figure.value, figure.unit)
-            finite = value is not None and bool(np.isfinite(value))
-            detail, at_unit = "" if finite else "nowhere", "" if figure.at is None else "deg"
-            found[figure.name] = Figure(value if finite else None, unit, figure.at, detail, at_unit)
-        return Figures(found)
+        return Figures.placed(self.recipe, figures_of(self._design), "deg")
 
     def motion(self, theta: ArrayLike, *, derivative: int = 0) -> Array:
         """Angle of the turret above its start, rad, at any shaft angles, rad, in their shape, or a derivative.

@@ -13,6 +13,7 @@ from camgeo.common.rounding import downward, upward
 from camgeo.motions.motion import check_filled
 from camgeo.part import bore
 from camgeo.part.keyway import FEATURE as KEYWAY
+from camgeo.part.keyway import check_round
 from camgeo.part.part import Part
 from camgeo.recipe.export import build_export, check_files
 from camgeo.recipe.figure_bounds import build_bounds, check_bounds
@@ -85,7 +86,7 @@ def _check(values: Values, reader: Reader) -> None:
     check_filled(cam["motion"], "cam.motion", TURN, "the whole turn, 360 degrees", reader, why=why)
     _check_turret(cam, reader)
     _check_drive(cam.get("drive", {}), reader)
-    _check_part(part, reader)
+    check_round(part, reader)
     check_files(values, reader, FILES)
     if reader.errors:
         return
@@ -135,15 +136,6 @@ def _loaded(drive: Values) -> bool:
     return "load" in drive or ("inertia" in drive and "rpm" in drive)
 
 
-def _check_part(part: Values, reader: Reader) -> None:
-    bore.check_bore(part, reader, [KEYWAY.name] if KEYWAY.name in part else [])
-    if KEYWAY.name in part:
-        for key, why in KEYWAY.needs:
-            if key not in part:
-                reader.fault_at(f"part.{KEYWAY.name}", f"needs part.{key}: {why}", None, f"give part.{key}")
-        KEYWAY.check(part, reader)
-
-
 def _check_barrel(values: Values, reader: Reader) -> None:
     """Note a floor that the rollers of a barrel do not pass."""
     cam = values["cam"]
@@ -189,8 +181,13 @@ def _ends(cam: Values) -> tuple[float, float]:
         inner, outer = blank - depth + FLOOR_GAP, blank
     else:
         blank = cam["globoid"]["radius"]
-        inner, outer = blank, blank + depth - FLOOR_GAP
+        inner, outer = blank, _reaching(blank + depth - FLOOR_GAP, turret["roller"])
     return turret.get("from", inner), turret.get("to", outer)
+
+
+def _reaching(layer: float, roller: float) -> float:
+    """Distance of a roller's flat end from a globoid's turret, mm, whose rim reaches a layer, mm; 0 where none does."""
+    return math.sqrt(max(layer * layer - roller * roller, 0.0))
 
 
 def _check_roller(values: Values, reader: Reader) -> None:
@@ -200,17 +197,20 @@ def _check_roller(values: Values, reader: Reader) -> None:
     barrel = "barrel" in cam
     blank = cam["barrel" if barrel else "globoid"]["radius"]
     floor = blank - cam["depth"] if barrel else blank + cam["depth"]
+    deepest = floor if barrel else _reaching(floor, turret["roller"])
     if barrel and not begins > floor:
         remedy = f"give more than {_shown(floor, reader)}, or a greater depth"
         reader.fault_at(f"{path}.from", "the roller's end stands on the floor", _shown(begins, reader), remedy)
-    elif not barrel and not ends < floor:
-        remedy = f"give less than {_shown(floor, reader)}, or a greater depth"
-        reader.fault_at(f"{path}.to", "the roller's end stands on the floor", _shown(ends, reader), remedy)
+    elif not barrel and "to" in turret and not ends < deepest:
+        remedy = f"give less than {_less(deepest, reader)}, or a greater depth"
+        problem = "the rim of the roller's end stands on the floor"
+        reader.fault_at(f"{path}.to", problem, _shown(ends, reader), remedy)
     elif not ends > begins or (not begins < blank if barrel else not ends > blank):
         at = next((f"{path}.{key}" for key in ("from", "to") if key in turret), "cam.depth")
-        low, high = min(floor, blank), max(floor, blank)
-        remedy = f"let it bear between {_shown(low, reader)} and {_shown(high, reader)}"
-        remedy = remedy if at != "cam.depth" else f"give more than {_shown(FLOOR_GAP, reader)}"
+        low, high = min(deepest, blank), max(deepest, blank)
+        remedy = f"let it bear between {_shown(low, reader)} and {_less(high, reader)}"
+        rim = 0.0 if barrel else math.hypot(begins, turret["roller"]) - begins
+        remedy = remedy if at != "cam.depth" else f"give more than {_more(FLOOR_GAP + rim, reader)}"
         reader.fault_at(at, "the roller bears nowhere", None, remedy)
     half = math.pi / turret["stops"]
     if barrel:
@@ -262,7 +262,6 @@ def _built(values: Values, document: Document, reader: Reader) -> IndexRecipe:
     """Make the recipe of values in which there is no fault."""
     cam, part = values["cam"], values["part"]
     keyway, given = KEYWAY.build(part), cam["turret"]
-    form, turret = _form(values)
     inner, outer = _ends(cam)
     return IndexRecipe(
         name=values["name"],
@@ -272,8 +271,7 @@ def _built(values: Values, document: Document, reader: Reader) -> IndexRecipe:
         rotation=values.get("rotation", "cw"),
         export=build_export(values.get("export", {}), FILES, "stl"),
         verify=Verify(angles=ANGLES, **values.get("verify", {})),
-        form=form,
-        turret=turret,
+        turret=_turret(values),
         roller=Roller(given["roller"], inner, outer),
         stops=given["stops"],
         start=given.get("start", -math.pi / given["stops"]),
@@ -292,17 +290,16 @@ def _built(values: Values, document: Document, reader: Reader) -> IndexRecipe:
     )
 
 
-def _form(values: Values) -> tuple[Barrel | Globoid, Turret]:
-    """The blank, and the turret that goes with it."""
+def _turret(values: Values) -> Turret:
+    """The turret, with the form of the cam beside it."""
     cam, length, height = values["cam"], values["part"]["length"], _height(values)
     given = cam["turret"]
     common: dict[str, Any] = {"depth": cam["depth"], "height": height, "length": length}
     if "globoid" in cam:
         distance = cam["globoid"]["distance"]
-        return Globoid(radius=cam["globoid"]["radius"], distance=distance, **common), GloboidTurret(height, distance)
+        return GloboidTurret(Globoid(radius=cam["globoid"]["radius"], distance=distance, **common))
     side: Literal[-1, 1] = -1 if given.get("side") == "leading" else 1
     pitch = given["radius"]
     usual = 0.5 * side * pitch * (1.0 + math.cos(math.pi / given["stops"]))
     offset = cam["barrel"].get("offset", usual)
-    form = Barrel(radius=cam["barrel"]["radius"], offset=offset, pitch=pitch, side=side, **common)
-    return form, BarrelTurret(height, pitch, offset, side)
+    return BarrelTurret(Barrel(radius=cam["barrel"]["radius"], offset=offset, pitch=pitch, side=side, **common))

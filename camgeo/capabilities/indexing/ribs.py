@@ -71,7 +71,7 @@ def layer(design: IndexDesign, w: float) -> Layer:
     bottom = np.interp(at, phi, z, left=0.0, right=length)
     top = np.interp(at + TURN, over_phi, over_z, left=0.0, right=length)
     z = np.linspace(0.0, length, RISE + 1)
-    return Layer(design.recipe.turret.beside(w, z), length, first, bottom, np.maximum(bottom, top))
+    return Layer(design.recipe.form.beside(w, z), length, first, bottom, np.maximum(bottom, top))
 
 
 def line_in(flank: Flank, w: float) -> tuple[Array, Array]:

@@ -2,9 +2,10 @@
 
 Where a flank enters at the lower end face and leaves at the upper one, columns end on that face. The breaks of the
 motion, and the corners of the flank, lie on columns. Two columns are joined from the floor to the blank in the order of
-their layers. Where an end is met twice at one shaft angle, the columns before it lean instead, so that the last one
-lies in the end face. Each triangle lies in a box of shaft angles and rho, whose bound is proved
-(`camgeo.capabilities.indexing.bends`).
+their layers. Where a flank meets an end face twice at one shaft angle, the columns before it lean, and the last one
+lies in that face. Each triangle lies in a cell of shaft angles and rho, whose bound is proved
+(`camgeo.capabilities.indexing.bends`). Where a flank meets an end face is found in layers, and looked at again at all
+points of the sheet.
 """
 
 from __future__ import annotations
@@ -16,7 +17,7 @@ from typing import TYPE_CHECKING, NamedTuple
 import numpy as np
 
 from camgeo.capabilities.indexing.bends import bends
-from camgeo.capabilities.indexing.spans import NAMES, TrackError, breaks_within, layers_at, layers_of, span_of
+from camgeo.capabilities.indexing.spans import TrackError, breaks_within, layers_at, layers_of, span_of
 from camgeo.common.rounding import upward
 from camgeo.curve.curve import CurveError
 from camgeo.fit.nodes import ToleranceError
@@ -153,7 +154,7 @@ def _shape(flank: Flank) -> _Shape:
         before = sense * breaks[sense * breaks < inner - SAME]
         begin = max(inner - LEAN - 0.5 * (outer - inner), float(before.max(initial=-math.inf)))
         if ((sense * breaks > inner - SAME) & (sense * breaks < outer + SAME)).any():
-            problem = f"the {NAMES[flank.side]} flank meets an end face along a break of the motion"
+            problem = f"the {flank.name} flank meets an end face along a break of the motion"
             raise TrackError(problem, sense * inner, "give a part.length that is a little less")
         leans.append(_Lean(sense * begin, sense * (outer + 0.5 * (inner - begin))))
     return _Shape(ends[:, [0, -1]], (leans[0], leans[1]))
@@ -318,7 +319,7 @@ def _made(flank: Flank, net: _Net, off: float) -> Sheet:
     h, z, length = contact.h.copy(), contact.z.copy(), flank.form.length
     outside = np.where(net.face < 0, np.maximum(-z, z - length), 0.0)
     if float(outside.max()) > BEYOND:
-        problem = f"the {NAMES[flank.side]} flank leaves the cam and comes back"
+        problem = f"the {flank.name} flank leaves the cam and comes back"
         where = float(net.theta[int(np.argmax(outside))])
         raise TrackError(problem, where, "set the turret to the middle of the cam, or give another part.length")
     for k in range(2):

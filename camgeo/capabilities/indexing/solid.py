@@ -2,8 +2,8 @@
 
 In the layer of the blank the metal is one band about the cam: from the upper flank of a turn of the track up to the
 lower flank of the next turn. On the floor the groove is one band, from the lower flank up to the upper one. Both end
-on the end faces. These are plane regions between the bore and a line that runs along the blank, down the upper flank,
-along the floor and up the lower flank.
+on the end faces. These are plane, and bounded by the bore inside. Outside, a line bounds them that runs along the
+blank, down the upper flank, along the floor and up the lower flank.
 """
 
 from __future__ import annotations
@@ -16,7 +16,7 @@ import numpy as np
 from camgeo.capabilities.indexing.band import filled
 from camgeo.capabilities.indexing.sheet import sheet_of
 from camgeo.files.errors import RegionError
-from camgeo.files.mesh import Mesh, MeshFacts
+from camgeo.files.mesh import Building, MeshFacts
 from camgeo.files.prism import rounded_loop
 from camgeo.files.triangulate import region
 from camgeo.fit.bound import Bound
@@ -27,8 +27,8 @@ if TYPE_CHECKING:
     from camgeo.capabilities.indexing.design import IndexDesign
     from camgeo.capabilities.indexing.forms import Barrel, Globoid
     from camgeo.capabilities.indexing.sheet import Sheet
+    from camgeo.files.mesh import Mesh
     from camgeo.files.precision import Precision
-    from camgeo.files.triangulate import Triangles
     from kin.numeric.arrays import Array, Indices
 
 ROUNDINGS = math.sqrt(1.5)  # of a point in space, in those of a plane point
@@ -50,37 +50,6 @@ class _Line(NamedTuple):
         return _Line(*(np.concatenate([a, b[1:]]) for a, b in zip(self, other, strict=True)))
 
 
-class _Body:
-    """Points and triangles of a body under construction, with the greatest shift of a point by rounding, mm."""
-
-    def __init__(self, precision: Precision) -> None:
-        self.precision = precision
-        self.points: list[Array] = []
-        self.triangles: list[Triangles] = []
-        self.count, self.moved = 0, 0.0
-
-    def add(self, points: Array) -> Indices:
-        """Numbers of new points (n, 3), rounded as the file has them."""
-        if not len(points):
-            return np.zeros(0, dtype=np.intp)
-        rounded, moved = self.precision.rounded(points)
-        self.moved = max(self.moved, moved)
-        self.points.append(rounded)
-        self.count += len(points)
-        return np.arange(self.count - len(points), self.count)
-
-    def mesh(self, *, mirrored: bool) -> Mesh:
-        """The mesh; raises RegionError where rounding makes two neighbours one."""
-        points, triangles = np.concatenate(self.points), np.concatenate(self.triangles)
-        if mirrored:
-            points = points * np.array([1.0, -1.0, 1.0]) + 0.0
-            triangles = triangles[:, ::-1]
-        mesh = Mesh(points, triangles)
-        if not bool(mesh.area_vectors.any(axis=1).all()):
-            raise RegionError(f"a triangle of the cam has no area in {self.precision.name}")
-        return mesh
-
-
 class _Wall(NamedTuple):
     """A flank in the body: its lines on floor and blank, and numbers of its points at both end faces."""
 
@@ -98,18 +67,18 @@ def index_mesh(design: IndexDesign, tolerance: float, precision: Precision) -> t
     recipe, form = design.recipe, design.recipe.form
     size = max(form.rim(form.blank), abs(form.length))
     fine = precision.fit_tolerance(tolerance, ROUNDINGS * size)
-    widths = [form.widest(w, fine) for w in (form.floor, form.blank)]
-    wide = min(width[0] for width in widths), min(width[1] for width in widths)
-    body = _Body(precision)
+    deep, high = (form.widest(w, fine) for w in (form.floor, form.blank))
+    wide = min(deep[0], high[0]), min(deep[1], high[1])
+    body = Building(precision)
     sheets = {name: sheet_of(flank, fine, wide) for name, flank in design.flanks.items()}
     walls = {name: _wall(body, form, sheet) for name, sheet in sheets.items()}
     lower, upper = walls["lower"], walls["upper"]
     floor, blank = (form, form.floor), (form, form.blank)
-    mouths = [_arc(body, floor, (k, upper.floor, lower.floor), 0.0, wide[0]) for k in range(2)]
-    rims = [_arc(body, blank, (k, lower.blank, upper.blank), -TURN, wide[0]) for k in range(2)]
-    off = _fill(body, floor, mouths[0].then(lower.floor), upper.floor.then(mouths[1]), wide)
+    mouths = [_arc(body, floor, (k, upper.floor, lower.floor), 0.0, deep[0]) for k in range(2)]
+    rims = [_arc(body, blank, (k, lower.blank, upper.blank), -TURN, high[0]) for k in range(2)]
+    off = _fill(body, floor, mouths[0].then(lower.floor), upper.floor.then(mouths[1]), deep)
     rib = rims[0].then(upper.blank), lower.blank.turned(-TURN).then(rims[1])
-    off = max(off, _fill(body, blank, *rib, wide))
+    off = max(off, _fill(body, blank, *rib, high))
     if off > fine:
         raise ToleranceError(f"blank and floor are not within {tolerance:.3g} mm", off)
     bore_low, bore_high, bore_off = _bore(body, design, tolerance)
@@ -120,14 +89,14 @@ def index_mesh(design: IndexDesign, tolerance: float, precision: Precision) -> t
         a, b = bore_high, bore_low
         c, d = np.roll(a, -1), np.roll(b, -1)
         body.triangles += [np.column_stack((a, c, b)), np.column_stack((d, b, c))]
-    mesh = body.mesh(mirrored=recipe.mirrored)
+    mesh = body.mesh("cam", mirrored=recipe.mirrored)
     flanks = max(sheet.off for sheet in sheets.values()) + body.moved
     precision.within("the flank", flanks, tolerance)
     rest = max(off + body.moved, bore_off)
     return mesh, MeshFacts(len(mesh.points), body.moved, Bound(flanks, flanks).wider(Bound(rest, rest)))
 
 
-def _wall(body: _Body, form: Barrel | Globoid, sheet: Sheet) -> _Wall:
+def _wall(body: Building, form: Barrel | Globoid, sheet: Sheet) -> _Wall:
     """A flank, added to the body."""
     points = form.points(sheet.phi, sheet.h, sheet.w)
     points[:, 2] = sheet.z
@@ -141,7 +110,7 @@ def _wall(body: _Body, form: Barrel | Globoid, sheet: Sheet) -> _Wall:
 
 
 def _arc(
-    body: _Body, layer: tuple[Barrel | Globoid, float], between: tuple[int, _Line, _Line], turn: float, wide: float
+    body: Building, layer: tuple[Barrel | Globoid, float], between: tuple[int, _Line, _Line], turn: float, wide: float
 ) -> _Line:
     """The edge of a layer with an end face, 0 or 1, from the end of one line, turned, to that of another."""
     (form, w), (k, first, last) = layer, between
@@ -157,7 +126,7 @@ def _arc(
 
 
 def _fill(
-    body: _Body, layer: tuple[Barrel | Globoid, float], lower: _Line, upper: _Line, wide: tuple[float, float]
+    body: Building, layer: tuple[Barrel | Globoid, float], lower: _Line, upper: _Line, wide: tuple[float, float]
 ) -> float:
     """Add the band of a layer between two lines; the bound of its distance from the layer, mm."""
     form, w = layer
@@ -174,7 +143,7 @@ def _fill(
     return float(form.off(w, *spans).max())
 
 
-def _face(body: _Body, outer: Indices, inner: Indices, *, up: bool) -> None:
+def _face(body: Building, outer: Indices, inner: Indices, *, up: bool) -> None:
     """Plane end face within a line, and outside another one unless that has no point."""
     points = np.concatenate(body.points)
     holes = [points[inner, :2]] if inner.size else []
@@ -182,7 +151,7 @@ def _face(body: _Body, outer: Indices, inner: Indices, *, up: bool) -> None:
     body.triangles.append(faces if up else faces[:, ::-1])
 
 
-def _bore(body: _Body, design: IndexDesign, tolerance: float) -> tuple[Indices, Indices, float]:
+def _bore(body: Building, design: IndexDesign, tolerance: float) -> tuple[Indices, Indices, float]:
     """Numbers of the points of the bore on both end faces, none without one, and the distance of its walls, mm."""
     opening = design.bore
     if opening is None:

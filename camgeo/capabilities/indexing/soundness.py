@@ -1,4 +1,8 @@
-"""Whether an indexing cam can be made: rollers that meet what they must not, undercut, ribs that vanish."""
+"""Whether an indexing cam can be made: rollers that meet what they must not, undercut, ribs that vanish.
+
+Samples find a fault and the size that would serve. That no flank is undercut is proved at the end
+(`camgeo.capabilities.indexing.undercut`).
+"""
 
 from __future__ import annotations
 
@@ -7,7 +11,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from camgeo.capabilities.indexing.spans import TrackError, demand_clear, demand_ends
+from camgeo.capabilities.indexing.spans import TrackError, demand_ends
 from camgeo.capabilities.indexing.tracks import rib_thickness, track
 from camgeo.capabilities.indexing.undercut import demand_regular
 from camgeo.common.rounding import downward
@@ -30,7 +34,7 @@ def demand_room(design: IndexDesign) -> None:
     def shown(value: float) -> str:
         return f"{value / recipe.mm:.6g} {recipe.units}"
 
-    problem = recipe.turret.misled(design.largest, recipe.roller.inner, recipe.layers, recipe.length, shown)
+    problem = recipe.turret.fault(design.largest, shown)
     if problem is not None:
         field, words, remedy = problem
         raise recipe.error(recipe.stated(field), words, None, remedy)
@@ -63,8 +67,6 @@ def _demand_proved(design: IndexDesign) -> None:
     """Raise RecipeErrors where the track does not go from end face to end face, or undercut is not proved away."""
     try:
         demand_ends(design.flanks)
-        for flank in design.flanks.values():
-            demand_clear(flank)
     except TrackError as error:
         length = _largest(design.recipe.length, lambda length: _passes(design.shortened(length)))
         mm, units = design.recipe.mm, design.recipe.units

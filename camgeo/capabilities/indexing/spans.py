@@ -1,12 +1,12 @@
-"""The track of all rollers in the layers of an indexing cam: where it enters and leaves, and what stands between."""
+"""Where the flanks of an indexing cam meet its end faces, layer by layer, and whether the track is sound there."""
 
 from __future__ import annotations
 
-import math
 from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
+from camgeo.capabilities.indexing.forms import QUARTER
 from camgeo.curve.curve import CurveError
 from kin.numeric.angles import TURN
 from kin.numeric.newton import zeros
@@ -20,8 +20,7 @@ if TYPE_CHECKING:
 SEEK = 720  # shaft angles of a turn at which ends are sought
 LAYERS = 9  # at which a cam is looked at
 SETTLED = 1e-12  # rad: the last step to an end
-QUARTER = 0.5 * math.pi
-NAMES = {-1: "lower", 1: "upper"}
+MARGIN = 0.1  # rad on the turret beyond the ends of the cam, over which a track is sought
 
 
 class TrackError(CurveError):
@@ -48,7 +47,7 @@ def layers_of(flank: Flank, count: int = LAYERS) -> Array:
 
 
 def angles_of(flank: Flank) -> Array:
-    """Shaft angles, rad, over which the motion is known and the roller stands on the cam's side of its turret."""
+    """Shaft angles, rad, over which the motion is known and the roller may touch the cam, or is a little beyond it."""
     first, last = flank.law.turns
     theta = np.linspace(TURN * first, TURN * (last + 1), SEEK * (last + 1 - first) + 1)
     return np.asarray(theta[_near(flank, theta)])
@@ -56,9 +55,9 @@ def angles_of(flank: Flank) -> Array:
 
 def _near(flank: Flank, theta: Array) -> Mask:
     """Whether the roller may touch the cam at shaft angles (n,), rad, or is a little beyond it (n,)."""
-    low, high = flank.form.passing(flank.radius)
+    low, high = flank.form.spanned(flank.radius)
     psi = flank.psi(theta)
-    return np.asarray((psi > low) & (psi < high))
+    return np.asarray((psi > max(low - MARGIN, -QUARTER)) & (psi < min(high + MARGIN, QUARTER)))
 
 
 def span_of(flank: Flank, w: Array) -> Span:
@@ -82,7 +81,7 @@ def _brackets(flank: Flank, w: Array) -> tuple[Array, Array]:
         z = np.where(np.isfinite(rho), flank.contact(theta, pose, rho).z, np.nan)
         inside = (z > 0.0) & (z < length)
         if not inside.any():
-            problem = f"the {NAMES[flank.side]} flank does not pass between the end faces"
+            problem = f"the {flank.name} flank does not pass between the end faces"
             raise TrackError(problem, float(theta[theta.size // 2]), "set the turret to the middle of the cam")
         run = np.flatnonzero(inside)
         first, last = int(run[0]), int(run[-1])
@@ -92,7 +91,7 @@ def _brackets(flank: Flank, w: Array) -> tuple[Array, Array]:
             raise _missed(flank, float(theta[last if enters else first]), "upper" if enters else "lower")
         if run.size != last - first + 1:
             gap = int(run[np.argmax(np.diff(run) > 1)])
-            problem = f"the {NAMES[flank.side]} flank leaves the cam and comes back"
+            problem = f"the {flank.name} flank leaves the cam and comes back"
             raise TrackError(problem, float(theta[gap]), "let the turret advance without turning back")
         found[:, 0, j] = theta[first - 1], theta[first]
         found[:, 1, j] = theta[last], theta[last + 1]
@@ -101,7 +100,7 @@ def _brackets(flank: Flank, w: Array) -> tuple[Array, Array]:
 
 def _missed(flank: Flank, theta: float, name: str) -> TrackError:
     return TrackError(
-        f"the {NAMES[flank.side]} flank does not reach the {name} end face: the roller leaves the cam at its side",
+        f"the {flank.name} flank does not reach the {name} end face: the roller leaves the cam at its side",
         theta,
         "give a shorter part.length",
     )
@@ -125,8 +124,7 @@ def _end(flank: Flank, w: Array, low: Array, high: Array, z: float) -> Array:
 
 def breaks_within(flank: Flank) -> Array:
     """Shaft angles, rad, rising, at which a derivative of the motion may jump, where the roller is near."""
-    first, last = flank.law.turns
-    theta = np.sort(np.concatenate([np.asarray(flank.law.breaks) + TURN * k for k in range(first, last + 1)]))
+    theta = flank.law.breaks_over(*flank.law.turns)
     return np.asarray(theta[_near(flank, theta)])
 
 
@@ -151,23 +149,10 @@ def layers_at(flank: Flank, theta: Array, z: float) -> Array:
     return zeros(off, np.minimum(low, high), np.maximum(low, high), 0.5 * (low + high), SETTLED)
 
 
-def demand_clear(flank: Flank) -> None:
-    """Raise TrackError where a roller that has left at an end face comes near the cam again behind the turret."""
-    psi = np.linspace(0.0, math.pi, 721)
-    form = flank.form
-    for sign, name in ((1.0, "upper"), (-1.0, "lower")):
-        near = form.meets(sign * psi, flank.radius)
-        clear = np.flatnonzero(~near)
-        if not clear.size or near[clear[0] :].any():
-            problem = f"a roller that has left at the {name} end face meets the cam again on the turret's far side"
-            where = float(np.mean(angles_of(flank)))
-            raise TrackError(problem, where, "give a larger turret, or a shorter part.length")
-
-
 def demand_ends(flanks: Mapping[str, Flank]) -> None:
-    """Raise TrackError where the rib between two turns of the track does not reach an end face.
+    """Raise TrackError where the rib between two turns of the groove does not reach an end face, and as `span_of` does.
 
-    Flanks are `lower` and `upper`; raises as `span_of` does, too.
+    Flanks are `lower` and `upper`. It is looked at on the floor and on the blank.
     """
     lower, upper = (
         (flank, span_of(flank, np.array([flank.form.floor, flank.form.blank])))

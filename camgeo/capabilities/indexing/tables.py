@@ -33,8 +33,8 @@ def motion_table(design: IndexDesign, theta: Array) -> tuple[tuple[str, ...], Ar
     """Names of 6 columns, and rows (n, 6) at shaft angles (n,), rad.
 
     The turret's angle is that of its roller at the start, degrees; velocity and acceleration are by the radian.
-    Pressure angles are those in the middle of the line of the best placed roller of each flank, above 0 where the cam
-    drives the turret on; nan where no roller is borne.
+    Pressure angles are those in the middle of the line of contact of each flank's best placed roller. They are above 0
+    where the cam drives the turret on, and nan where the flank bears on no roller.
     """
     rows = np.degrees(design.law.derivatives(theta, 2))
     rows[0] += math.degrees(design.recipe.start)

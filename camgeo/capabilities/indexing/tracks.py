@@ -20,8 +20,7 @@ def angles(design: IndexDesign) -> Array:
     """Shaft angles (n,), rad, at which the roller that stands at the start after no turn may touch the cam."""
     turns = design.turns
     steps = np.arange(turns.start * STEPS, turns.stop * STEPS + 1) * (TURN / STEPS)
-    breaks = (design.law.breaks[None, :] + TURN * np.arange(turns.start, turns.stop)[:, None]).ravel()
-    theta = np.unique(np.concatenate([steps, breaks]))
+    theta = np.unique(np.concatenate([steps, design.law.breaks_over(turns.start, turns.stop - 1)]))
     psi = design.recipe.start + design.law.derivatives(theta, 0)[0]
     low, high = design.spanned
     near = np.flatnonzero((psi >= low) & (psi <= high))
@@ -40,9 +39,9 @@ def track(design: IndexDesign, name: str, w: float) -> tuple[Array, Contact]:
 def rib_thickness(design: IndexDesign) -> tuple[float, float]:
     """Least thickness of the rib, mm, and the shaft angle at which its lower roller is there, rad.
 
-    It is measured along the cam's axis, in a globoid along arcs about the turret's axis, at floor, middle and blank,
-    where both its sides lie within the cam; of a rib that is none also where one of them does. Without such a place it
-    is infinite.
+    It is measured along the cam's axis, in a globoid along arcs about the turret's axis. It is sampled at floor, middle
+    and blank, where both sides of the rib lie within the cam. Where the rollers leave no rib, and it is 0 or less, one
+    side is enough. It is infinite without such a place.
     """
     recipe, found = design.recipe, []
     for w in np.linspace(*recipe.layers, 3).tolist():
@@ -63,13 +62,13 @@ def rib_thickness(design: IndexDesign) -> tuple[float, float]:
 
 def removed(design: IndexDesign, w: float) -> float:
     """Area, mm^2, that all rollers together take out of a layer, mm."""
-    turret = design.recipe.turret
-    ends = np.array(design.recipe.form.ends(w))
-    base, most = turret.across(np.full(2, w), ends)
+    form = design.recipe.form
+    ends = np.array(form.ends(w))
+    base, most = form.area(w, ends)
     taken, last = {}, {}
     for name in design.flanks:
         _, rows = track(design, name, w)
-        below = turret.across(np.full(rows.h.shape, w), np.clip(rows.h, *ends)) - base
+        below = form.area(w, np.clip(rows.h, *ends)) - base
         taken[name] = float(np.sum(0.5 * (below[1:] + below[:-1]) * np.diff(rows.phi)))
         last[name] = float(rows.phi[-1])
     return taken["upper"] - taken["lower"] + float(most - base) * (last["lower"] - last["upper"])

@@ -1,10 +1,10 @@
-"""Turrets of both forms of indexing cams: where their rollers are in touch with the cam, and what they take out."""
+"""Turrets of both forms of indexing cams: their names and pictures, and rollers that meet what they must not."""
 
 from __future__ import annotations
 
 import math
 from abc import ABC, abstractmethod
-from typing import TYPE_CHECKING, ClassVar, Literal, NamedTuple
+from typing import TYPE_CHECKING, ClassVar, NamedTuple
 
 import numpy as np
 
@@ -15,8 +15,8 @@ from kin.numeric.records import dataclass
 if TYPE_CHECKING:
     from collections.abc import Callable
 
+    from camgeo.capabilities.indexing.forms import Barrel, Globoid
     from kin.indexing.forms import Form
-    from kin.numeric.arrays import Array
 
 RIM = 1.5  # radii of a roller from its axis to the rim of a dial, in a drawing
 HUB, SPOKE = 0.25, 0.4  # of the pitch radius, and of a roller's radius: hub and half width of spokes of a dial
@@ -72,13 +72,18 @@ class Standing(NamedTuple):
 
 @dataclass(frozen=True)
 class Turret(ABC):
-    """A turret whose axis stands at a `height`, mm, over the cam's lower face."""
+    """A turret beside a cam of its form, in words and pictures."""
 
     word: ClassVar[str]  # its name in reports
     about: ClassVar[str]  # whose axis the layers are about
     unrolls: ClassVar[bool]  # whether its layers are cylinders, which have developments
     facing: ClassVar[float]  # polar angle beside the shaft angle, rad, that faces who looks along the turret's axis
-    height: float
+    form: Barrel | Globoid
+
+    @property
+    def height(self) -> float:
+        """Height of its axis over the cam's lower face, mm."""
+        return self.form.height
 
     @property
     @abstractmethod
@@ -86,206 +91,116 @@ class Turret(ABC):
         """Sizes that place it, mm, by their names in reports."""
 
     @abstractmethod
-    def core(self, floor: float) -> float:
-        """Radius about the cam's axis, mm, of what is left within a floor where that is thinnest."""
-
-    @abstractmethod
-    def across(self, w: Array, h: Array) -> Array:
-        """Area below a height h in a layer w by the radian of the polar angle, mm^2, up to a constant of the layer."""
-
-    @abstractmethod
-    def spanned(self, radius: float, blank: float, length: float) -> tuple[float, float]:
-        """Angles, rad, between which a roller of a radius, mm, touches a cam of a `length`, mm.
-
-        They are nan where a roller never leaves it at an end.
-        """
-
-    @abstractmethod
-    def misled(
-        self, radius: float, inner: float, layers: tuple[float, float], length: float, shown: Callable[[float], str]
-    ) -> tuple[str, str, str] | None:
+    def fault(self, radius: float, shown: Callable[[float], str]) -> tuple[str, str, str] | None:
         """Field, problem and remedy where rollers do not leave the cam at its ends, or meet it on their way back.
 
-        The rollers have a radius and begin at `inner`; the track lies between two layers, all mm. `shown` writes a
-        length, mm, in the recipe's unit. None where there is no such problem.
+        The rollers have a radius, mm. `shown` writes a length, mm, in the recipe's unit. None without such a problem.
         """
-
-    @abstractmethod
-    def whole(self, blank: float, length: float) -> float:
-        """Volume, mm^3, of a blank of a layer and a length, mm."""
-
-    @abstractmethod
-    def beside(self, w: float, z: Array) -> Array:
-        """Distances from the cam's axis, mm (n,), of a layer w, mm, at heights over the lower face, mm (n,)."""
 
     @abstractmethod
     def drawn(self, roller: Roller, stops: int, sense: float) -> Drawn:
-        """Shapes to look at, of so many rollers; `sense` -1 of a cam that is mirrored."""
+        """Shapes to look at, with so many rollers; `sense` -1 of a cam that is mirrored."""
 
     @abstractmethod
-    def standing(self, roller: Roller, stops: int, blank: float) -> Standing:
-        """Bars to look at, of so many rollers, beside a blank of a layer, mm."""
+    def standing(self, roller: Roller, stops: int) -> Standing:
+        """Bars to look at, of so many rollers."""
 
     @abstractmethod
-    def intended(self, radius: float, depth: float) -> Form:
-        """The form in kin's words, of a blank of a radius with a track of a depth, mm."""
+    def intended(self) -> Form:
+        """The form in kin's words."""
 
 
 @dataclass(frozen=True)
 class BarrelTurret(Turret):
-    """A turret with rollers parallel to its axis at the distance `pitch`, mm, from it.
-
-    Its axis is parallel to a radius of the cam, at the distance `offset`, mm, along e_t from it. `side` is 1 for a
-    trailing turret, -1 for a leading one: the roller stands at offset - side pitch cos psi.
-    """
+    """A turret with rollers parallel to its axis, beside a barrel."""
 
     word: ClassVar[str] = "barrel"
     about: ClassVar[str] = "the cam"
     unrolls: ClassVar[bool] = True
     facing: ClassVar[float] = 0.0
-    pitch: float
-    offset: float
-    side: Literal[-1, 1]
+    form: Barrel
 
     @property
     def sizes(self) -> dict[str, float]:
         """Pitch radius of the rollers, and offset."""
-        return {"pitch_radius": self.pitch, "offset": self.offset}
+        return {"pitch_radius": self.form.pitch, "offset": self.form.offset}
 
-    def core(self, floor: float) -> float:
-        """The floor's own radius."""
-        return floor
-
-    def across(self, w: Array, h: Array) -> Array:
-        """Area of a cylinder."""
-        return np.asarray(w * h)
-
-    def spanned(self, radius: float, blank: float, length: float) -> tuple[float, float]:  # noqa: ARG002
-        """Angles at which a whole roller is beyond either face."""
-        low, high = -self.height - radius, length - self.height + radius
-        if not max(-low, high) < self.pitch:
-            return math.nan, math.nan
-        return math.asin(low / self.pitch), math.asin(high / self.pitch)
-
-    def misled(
-        self, radius: float, inner: float, layers: tuple[float, float], length: float, shown: Callable[[float], str]
-    ) -> tuple[str, str, str] | None:
+    def fault(self, radius: float, shown: Callable[[float], str]) -> tuple[str, str, str] | None:
         """Problem of rollers that turn back within the cam, stand far off its radius, or meet it behind the turret."""
-        floor, blank = layers
-        room, away = LESS * floor, self.side * self.offset
-        ends = self.spanned(radius, blank, length)
-        near = self.pitch - away  # how far the roller in the middle stands off a radius
+        form = self.form
+        pitch, room, away = form.pitch, LESS * form.floor, form.side * form.offset
+        near = pitch - away  # how far the roller in the middle stands off a radius
         if not abs(near) < room:
-            low, high = self.pitch - room, self.pitch + room
-            sides = sorted((self.side * low, self.side * high))
+            low, high = pitch - room, pitch + room
+            sides = sorted((form.side * low, form.side * high))
             problem = f"the roller's axis stands {shown(abs(near))} off a radius of the cam, past the floor's edge"
             return "cam.barrel.offset", problem, f"give one between {shown(sides[0])} and {shown(sides[1])}"
-        farthest = (away - room) / self.pitch  # the least cosine up to which a roller may be led
+        farthest = (away - room) / pitch  # the least cosine up to which a roller may be led
         steepest = math.acos(max(farthest, 0.0)) if farthest < 1.0 else 0.0
-        if not max(-ends[0], ends[1]) < steepest:  # nor where it is nan
-            most = 2.0 * (self.pitch * math.sin(steepest) - radius)
+        low, high = form.spanned(radius)
+        end = max(-low, high)
+        if not end < steepest:
+            most = 2.0 * (pitch * math.sin(steepest) - radius)
             problem = "the rollers stand past the floor's edge before they leave the cam at its ends"
             remedy = f"give less than {shown(most * LESS)}, with the turret's axis in the middle of it"
             return "part.length", problem, remedy if most > 0.0 else "give a smaller roller"
-        behind = away + self.pitch * math.cos(max(-ends[0], ends[1])) - radius
-        if not behind > math.sqrt(max(blank * blank - inner * inner, 0.0)):
+        # a roller comes back between the end faces at the angle pi - end, and then moves farther off
+        if not away + pitch * math.cos(end) - radius > form.radius:
             problem = "the rollers meet the cam on their way back, behind the turret's axis"
             return "cam.turret.radius", problem, "give a larger one with an offset that is larger by as much"
         return None
-
-    def whole(self, blank: float, length: float) -> float:
-        """Volume of a cylinder."""
-        return math.pi * blank * blank * length
-
-    def beside(self, w: float, z: Array) -> Array:
-        """The layer's own radius."""
-        return np.full_like(z, w)
 
     def drawn(self, roller: Roller, stops: int, sense: float) -> Drawn:
         """A dial with spokes, and the ends of its rollers as discs."""
         angles = TURN * np.arange(stops) / stops
         ways = np.column_stack([np.cos(angles), np.sin(angles)])
-        places = (self.pitch * ways).tolist()
-        ends = ((self.pitch - (1.0 + SPOKE) * roller.radius) * ways).tolist()
+        places = (self.form.pitch * ways).tolist()
+        ends = ((self.form.pitch - (1.0 + SPOKE) * roller.radius) * ways).tolist()
         spokes = tuple(bar((0.0, 0.0), (x, y), 2.0 * SPOKE * roller.radius) for x, y in ends)
         return Drawn(
-            (sense * self.offset, self.height),
-            (*spokes, disc(0.0, 0.0, HUB * self.pitch)),
-            disc(0.0, 0.0, self.pitch + RIM * roller.radius),
+            (sense * self.form.offset, self.height),
+            (*spokes, disc(0.0, 0.0, HUB * self.form.pitch)),
+            disc(0.0, 0.0, self.form.pitch + RIM * roller.radius),
             tuple(disc(x, y, roller.radius) for x, y in places),
-            -self.side * round(sense),
+            -self.form.side * round(sense),
         )
 
-    def standing(self, roller: Roller, stops: int, blank: float) -> Standing:
+    def standing(self, roller: Roller, stops: int) -> Standing:
         """A plate before the cam, from which the rollers' studs reach towards its axis."""
         angles = TURN * np.arange(stops) / stops
-        places = (self.pitch * np.column_stack([np.cos(angles), np.sin(angles)])).tolist()
-        near = max(roller.outer, blank) + GAP * roller.radius
-        plate = Bar((0.0, 0.0, near), (0.0, 0.0, near + roller.radius), self.pitch + RIM * roller.radius)
+        places = (self.form.pitch * np.column_stack([np.cos(angles), np.sin(angles)])).tolist()
+        near = max(roller.outer, self.form.blank) + GAP * roller.radius
+        plate = Bar((0.0, 0.0, near), (0.0, 0.0, near + roller.radius), self.form.pitch + RIM * roller.radius)
         studs = tuple(Bar((x, y, roller.outer), (x, y, near), STUD * roller.radius) for x, y in places)
         rollers = tuple(Bar((x, y, roller.inner), (x, y, roller.outer), roller.radius) for x, y in places)
         return Standing((plate, *studs), rollers, (1.0, 0.0, 0.0), (0.0, 1.0, 0.0))
 
-    def intended(self, radius: float, depth: float) -> Form:
+    def intended(self) -> Form:
         """Kin's barrel."""
-        from kin.indexing.intent import Barrel
+        from kin.indexing.intent import Barrel as Intended
 
-        return Barrel(radius, depth, self.offset, self.pitch, self.side)
+        form = self.form
+        return Intended(form.radius, form.depth, form.offset, form.pitch, form.side)
 
 
 @dataclass(frozen=True)
 class GloboidTurret(Turret):
-    """A turret with radial rollers, whose axis is square to the cam's at the distance `distance`, mm."""
+    """A turret with radial rollers, beside a globoid."""
 
     word: ClassVar[str] = "globoid"
     about: ClassVar[str] = "the turret"
     unrolls: ClassVar[bool] = False
     facing: ClassVar[float] = -0.5 * math.pi
-    distance: float
+    form: Globoid
 
     @property
     def sizes(self) -> dict[str, float]:
         """Distance of both axes."""
-        return {"distance": self.distance}
+        return {"distance": self.form.distance}
 
-    def core(self, floor: float) -> float:
-        """What is left in the plane through both axes."""
-        return self.distance - floor
-
-    def across(self, w: Array, h: Array) -> Array:
-        """Area of a torus: w (C h - w sin h)."""
-        return np.asarray(w * (self.distance * h - w * np.sin(h)))
-
-    def spanned(self, radius: float, blank: float, length: float) -> tuple[float, float]:
-        """Angles at which the near side of a whole roller is beyond either face."""
-        reach, more = math.hypot(blank, radius), math.atan(radius / blank)
-        return math.asin(-self.height / reach) - more, math.asin((length - self.height) / reach) + more
-
-    def misled(
-        self,
-        radius: float,  # noqa: ARG002 - all matter for a barrel
-        inner: float,  # noqa: ARG002
-        layers: tuple[float, float],  # noqa: ARG002
-        length: float,  # noqa: ARG002
-        shown: Callable[[float], str],  # noqa: ARG002
-    ) -> tuple[str, str, str] | None:
+    def fault(self, radius: float, shown: Callable[[float], str]) -> tuple[str, str, str] | None:  # noqa: ARG002
         """No problem: rollers leave a globoid outwards, and are far from it behind the turret's axis."""
         return None
-
-    def whole(self, blank: float, length: float) -> float:
-        """Volume of a body between two planes, hollowed out by a torus."""
-
-        def upto(z: float) -> float:
-            root = math.sqrt(blank * blank - z * z)
-            half = 0.5 * (z * root + blank * blank * math.asin(z / blank))
-            c = self.distance
-            return math.pi * ((c * c + blank * blank) * z - z**3 / 3.0 - 2.0 * c * half)
-
-        return upto(length - self.height) - upto(-self.height)
-
-    def beside(self, w: float, z: Array) -> Array:
-        """Of a torus, the side towards the cam's axis."""
-        return np.asarray(self.distance - np.sqrt(w * w - (z - self.height) ** 2))
 
     def drawn(self, roller: Roller, stops: int, sense: float) -> Drawn:  # noqa: ARG002 - it is its own mirror image
         """A wheel with studs, and its rollers from the side."""
@@ -300,17 +215,17 @@ class GloboidTurret(Turret):
         hub = low - half
         studs = tuple(across(INNER_END * hub, low, STUD * half, angle) for angle in angles)
         return Drawn(
-            (self.distance, self.height),
+            (self.form.distance, self.height),
             (*studs, disc(0.0, 0.0, hub)),
             disc(0.0, 0.0, 0.5 * hub),
             tuple(across(low, high, half, angle) for angle in angles),
             -1,
         )
 
-    def standing(self, roller: Roller, stops: int, blank: float) -> Standing:
+    def standing(self, roller: Roller, stops: int) -> Standing:
         """A wheel that stands in the throat, with radial studs."""
         half = roller.radius
-        hub = min(roller.inner, blank) - half
+        hub = min(roller.inner, self.form.blank) - half
         angles = (TURN * np.arange(stops) / stops).tolist()
 
         def radial(low: float, high: float, radius: float, angle: float) -> Bar:
@@ -322,8 +237,8 @@ class GloboidTurret(Turret):
         rollers = tuple(radial(roller.inner, roller.outer, half, angle) for angle in angles)
         return Standing((wheel, *studs), rollers, (0.0, -1.0, 0.0), (1.0, 0.0, 0.0))
 
-    def intended(self, radius: float, depth: float) -> Form:
+    def intended(self) -> Form:
         """Kin's globoid."""
-        from kin.indexing.intent import Globoid
+        from kin.indexing.intent import Globoid as Intended
 
-        return Globoid(radius, depth, self.distance)
+        return Intended(self.form.radius, self.form.depth, self.form.distance)

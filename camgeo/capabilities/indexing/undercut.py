@@ -1,8 +1,9 @@
 """Whether a flank is regular in all of the metal: proved, or refused.
 
-In every layer a regular flank is a line along which the polar angle rises, and each roller touches it at one place
-alone: so where it is regular from floor to blank and from one end face to the other, no roller cuts into what another
-one leaves (`camgeo.capabilities.indexing.flank`: D > 0). It is proved in cells of shaft angles and rho.
+A flank is regular where D > 0 (`camgeo.capabilities.indexing.flank`). In every layer a regular flank is a line along
+which the polar angle rises, and each roller touches it at one place alone. If it is regular from floor to blank and
+from one end face to the other, no roller cuts into what another one leaves. D > 0 is proved in cells of shaft angles
+and rho; where an undercut is, and which roller would serve, is sampled.
 """
 
 from __future__ import annotations
@@ -13,7 +14,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from camgeo.capabilities.indexing.bends import pose_over
-from camgeo.capabilities.indexing.spans import NAMES, angles_of, breaks_within, layers_of
+from camgeo.capabilities.indexing.spans import angles_of, breaks_within, layers_of
 from camgeo.curve.curve import CurveError
 from kin.numeric.angles import TURN
 from kin.numeric.interval import Ball
@@ -52,10 +53,10 @@ def least_regular(flank: Flank) -> tuple[float, float, float]:
 
 
 def demand_regular(flank: Flank) -> None:
-    """Raise UndercutError where a flank is undercut in the metal, or where neither is proved."""
+    """Raise UndercutError where a flank is undercut in the metal, or where it is not proved that it is not."""
     least, at, layer = least_regular(flank)
     if least <= 0.0:
-        raise UndercutError(f"the {NAMES[flank.side]} flank is undercut", at, layer)
+        raise UndercutError(f"the {flank.name} flank is undercut", at, layer)
     low, high = flank.form.reach(flank.radius)
     # behind an end face, too: a flank that turns back there might come back into the metal
     begin, end = angles_of(flank)[[0, -1]].tolist()
@@ -76,7 +77,7 @@ def demand_regular(flank: Flank) -> None:
         t, rho = 0.5 * (a + b), 0.5 * (c + d)
         a, b = np.concatenate([a, t, a, t]), np.concatenate([t, b, t, b])
         c, d = np.concatenate([c, c, rho, rho]), np.concatenate([rho, rho, d, d])
-    problem = f"the {NAMES[flank.side]} flank is so near to an undercut that it can be neither proved nor excluded"
+    problem = f"the {flank.name} flank is so near to an undercut that it can be neither proved nor excluded"
     raise UndercutError(problem, float(a[0]), float(flank.along(a[:1], c[:1]).w[0]))
 
 

@@ -28,7 +28,7 @@ def intended(design: IndexDesign, mm: float = 1.0) -> intent.IndexIntent:
     recipe, roller = design.recipe, design.recipe.roller
     bore = None if design.bore is None else holes_of(Body(recipe.length, (design.bore,)))[0]
     return intent.IndexIntent(
-        recipe.turret.intended(recipe.form.radius, recipe.form.depth),
+        recipe.turret.intended(),
         recipe.turret.height,
         recipe.length,
         design.motion.motion,
@@ -100,5 +100,6 @@ def _flank(recipe: IndexRecipe, flank: FlankVerdict) -> dict[str, Any]:
     motion: dict[str, Any] = {}
     for key in ("max", "least", "most", "rms", "remainder"):
         motion[key], unit = in_units(recipe, getattr(flank.motion, key), "deg")
-    motion |= {"unit": unit, "at": flank.motion.at, "at_unit": "deg", "extremes": "proved"}
+    known = "sampled" if flank.pieces is None else "proved"  # lines of a development are looked at between points alone
+    motion |= {"unit": unit, "at": flank.motion.at, "at_unit": "deg", "extremes": known}
     return {"measured_error": error, "motion": motion}

@@ -1,6 +1,6 @@
 """The motion of a contour without a recipe: against the laws that contours were made for, and what it refuses.
 
-Holds: camgeo.capabilities.follow.
+Holds: camgeo.capabilities.follow, camgeo.capabilities.follow.command.
 """
 
 from __future__ import annotations

@@ -103,12 +103,8 @@ class Rollers:
 
 def rollers_of(design: IndexDesign, over: float) -> Rollers:
     """Rollers of a design whose motion is one cycloid over so many degrees, by the sizes that its recipe states."""
-    turret, recipe = design.recipe.turret, design.recipe
-    return Rollers(turret.word, {"height": turret.height, **_sizes(turret)}, recipe.stops, over, recipe.start)
-
-
-def _sizes(turret: object) -> dict[str, float]:
-    return {key: float(value) for key, value in vars(turret).items() if key != "height"}
+    recipe = design.recipe
+    return Rollers(recipe.turret.word, vars(recipe.form), recipe.stops, over, recipe.start)
 
 
 WINDOW = np.linspace(-1.5 * math.tau, 2.5 * math.tau, 8 * 1440 + 1)

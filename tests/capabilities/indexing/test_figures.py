@@ -67,12 +67,13 @@ def test_the_steepest_roller_of_a_globoid() -> None:
     """In the middle of the rise one roller faces the cam, and its outer end is the steepest."""
     found = known(shared_design(GLOBOID))
     rate = 2.0 * 45.0 / 120.0
-    for name, rho in (("", 62.0), ("-inner", 49.0), ("-outer", 62.0), ("-middle", 55.5)):
+    end = math.sqrt(62.0**2 - 8.0**2)  # of the roller, whose rim stands half a millimetre off the floor
+    for name, rho in (("", end), ("-inner", 49.0), ("-outer", end), ("-middle", 0.5 * (49.0 + end))):
         value, at = found[f"pressure-angle{name}"]
         assert value == pytest.approx(math.degrees(math.atan(rho * rate / (90.0 - rho))), abs=1e-6)
         assert at == pytest.approx(60.0, abs=0.01)
     assert found["pressure-angle-any"][0] >= found["pressure-angle"][0]
-    assert found["contact-length"][0] == pytest.approx(13.0)
+    assert found["contact-length"][0] == pytest.approx(end - 49.0)
 
 
 @pytest.mark.parametrize("text", [BARREL, GLOBOID], ids=["barrel", "globoid"])
@@ -105,9 +106,9 @@ def test_volumes() -> None:
     barrel, globoid = shared_design(BARREL), shared_design(GLOBOID)
     z = np.linspace(-30.0, 30.0, 20001)
     whole = float(np.trapezoid(math.pi * (90.0 - np.sqrt(49.0**2 - z**2)) ** 2, z))
-    assert globoid.recipe.turret.whole(49.0, 60.0) == pytest.approx(whole, rel=1e-8)
-    r = np.linspace(37.0, 50.0, 201)
-    taken = float(np.trapezoid([removed(barrel, w) for w in r.tolist()][::20], r[::20]))
+    assert globoid.recipe.form.volume == pytest.approx(whole, rel=1e-8)
+    r = np.linspace(37.0, 50.0, 11)
+    taken = float(np.trapezoid([removed(barrel, w) for w in r.tolist()], r))
     bore = 0.0 if barrel.bore is None else barrel.bore.outline.area
     assert volume(barrel) == pytest.approx(math.pi * 2500 * 80 - bore * 80 - taken, rel=1e-4)
 
@@ -162,6 +163,7 @@ def test_curvature_is_that_of_the_gap_across_the_line() -> None:
             assert float(flank.curvature(np.array([theta]), np.array([rho]))[0]) == pytest.approx(wanted, rel=5e-3)
 
 
+@pytest.mark.costly("a search of the turn for each load")
 def test_loads_follow_from_virtual_work() -> None:
     """T = (load + J psi'' Omega^2) psi', the torque on the turret its first factor; velocities those of a cycloid."""
     found = known(shared_design(DRIVEN))

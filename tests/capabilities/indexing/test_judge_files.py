@@ -31,7 +31,7 @@ FORMS = pytest.mark.parametrize("turret", [BARREL, GLOBOID])
 
 
 @functools.cache
-def mesh(turret):
+def mesh(turret) -> tuple[np.ndarray, np.ndarray]:
     return made(turret, **STEPS)
 
 

@@ -2,7 +2,8 @@
 
 Holds: camgeo.capabilities.indexing.library, camgeo.capabilities.indexing.pipeline,
 camgeo.capabilities.indexing.root, camgeo.capabilities.indexing.index_page,
-camgeo.capabilities.indexing.starter, camgeo.capabilities.indexing.making.
+camgeo.capabilities.indexing.starter, camgeo.capabilities.indexing.making,
+camgeo.capabilities.indexing.verdicts.
 """
 
 from __future__ import annotations
@@ -57,7 +58,7 @@ def test_a_run_writes_table_page_and_report(text: str, tmp_path: Path) -> None:
 def test_rollers_are_drawn_where_the_turret_leads_them(text: str, head: str) -> None:
     """To the right of the viewer y counts, of a globoid the distance from the cam's axis; rollers stand at psi."""
     design = shared_design(head + text)
-    sizes = vars(design.recipe.turret)
+    sizes = vars(design.recipe.form)
     bodies = {body.name: body for body in scene(design).bodies}
     for step in (0, 100, 260):
         theta = np.array([math.radians(0.5 * step)])
@@ -68,7 +69,8 @@ def test_rollers_are_drawn_where_the_turret_leads_them(text: str, head: str) -> 
         if text == BARREL:
             wanted = (sizes["offset"] - 60.0 * math.cos(psi)) * (-1.0 if head else 1.0), 40.0 + 60.0 * math.sin(psi)
         else:
-            wanted = 90.0 - 55.5 * math.cos(psi), 30.0 + 55.5 * math.sin(psi)
+            middle = 0.5 * (49.0 + math.sqrt(62.0**2 - 8.0**2))
+            wanted = 90.0 - middle * math.cos(psi), 30.0 + middle * math.sin(psi)
         assert min(math.dist(place, wanted) for place in found) < 0.2
 
 
@@ -118,6 +120,7 @@ def limited(limit: str, *pairs: tuple[str, str]) -> str:
     return changed(BARREL, DRIVE, ("export:", f"limits: {{{limit}}}\nexport:"), *pairs)
 
 
+@pytest.mark.costly("figures of a cam for each limit")
 def test_a_limit_that_fails_says_what_would_hold_it() -> None:
     """What a remedy names holds the limit; a pressure goes with the root of the load."""
     assert failure(limited("pressure-angle: {at_most: 20}")) == "a larger cam, or a longer motion"
@@ -141,6 +144,7 @@ def test_starters_are_sound(name: str, tmp_path: Path) -> None:
     assert main(["check", str(written(tmp_path, text))]) == 0
 
 
+@pytest.mark.costly("figures of both recipes")
 def test_shipped_recipes_are_sound() -> None:
     paths = sorted((ROOT / "recipes" / "indexing").glob("*.yaml"))
     assert [path.stem for path in paths] == ["index-barrel", "index-globoid"]

@@ -119,7 +119,7 @@ def changed(turret, **how):
 
 
 GLOBOID = Turret(
-    Globoid(49.0, 13.0, 90.0), 8, math.radians(-22.5), math.radians(120.0), 8.0, 49.0, 61.5, 50.0, 25.0, 0.0, 16.0
+    Globoid(49.0, 13.0, 90.0), 8, math.radians(-22.5), math.radians(120.0), 8.0, 49.0, 61.0, 50.0, 25.0, 0.0, 16.0
 )
 """c16 in a cam: 8 rollers on a turret 90 mm from the cam's axis."""
 
