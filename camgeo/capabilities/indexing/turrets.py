@@ -153,6 +153,9 @@ class BarrelTurret(Turret):
         if not max(-ends[0], ends[1]) < steepest:  # nor where it is nan
             most = 2.0 * (self.pitch * math.sin(steepest) - radius)
             problem = "the rollers stand past the floor's edge before they leave the cam at its ends"
+            lowest, highest = length - 0.5 * most * LESS, 0.5 * most * LESS
+            if lowest < highest:  # as long as it is, with the turret's axis elsewhere
+                return "cam.turret.height", problem, f"give one between {shown(lowest)} and {shown(highest)}"
             remedy = f"give less than {shown(most * LESS)}, with the turret's axis in the middle of it"
             return "part.length", problem, remedy if most > 0.0 else "give a smaller roller"
         behind = away + self.pitch * math.cos(max(-ends[0], ends[1])) - radius
