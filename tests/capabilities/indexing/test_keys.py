@@ -179,7 +179,7 @@ def test_remedies_of_a_size_hold(
 
 def test_a_step_between_two_angles_of_a_grid() -> None:
     """A step so short that the roller is past the cam from one angle to the next is too fast."""
-    text = changed(BARREL, ("over: 150", "over: 0.001"), ("dwell: 210", "dwell: 359.999"))
+    text = changed(BARREL, ("over: 150", "over: 0.001"), ("dwell: 210", "dwell: 359.999"), ("length: 80", "length: 30"))
     with pytest.raises(RecipeErrors, match=r"the turret takes a roller past the cam.*give a longer rise"):
         design_of(text)
 
