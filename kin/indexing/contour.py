@@ -17,6 +17,7 @@ import numpy as np
 
 from kin.indexing.rollers import Worst
 from kin.numeric.angles import TURN
+from kin.numeric.arrays import runs_of
 from kin.numeric.records import dataclass
 
 if TYPE_CHECKING:
@@ -29,6 +30,7 @@ PLAIN = 0.5  # of the tolerance: a bound below it need not be closer
 ROUNDS = 24  # of dividing triangles
 FAR, FEW = 10.0, 2  # times the tolerance: a surface found so far off is divided in no more rounds than these
 MOST_PARTS = 2_000_000  # triangles at a time while dividing
+LEAST_PARTS = 4  # of an edge that may span a track
 APART = 0.1  # rad: worst angles of a triangle's corners that are farther apart are not of one place of a flank
 
 
@@ -116,6 +118,34 @@ def proud(rollers: Rollers, known: Known, edged: Edged, own: Indices) -> Peak:
     if sure[k] > best.value:
         best = Peak(float(sure[k]), 0.0, float(edged.worst.theta[k]))
     return best._replace(remainder=max(0.0, float(most.max()) - best.value))
+
+
+def across(rollers: Rollers, body: Body, known: Known, which: Indices, floor: float) -> tuple[Peak, Peak]:
+    """How far edges of blank and ends, by numbers of their triangles, stand in the way of rollers: below, above them.
+
+    Such an edge spans metal. One that spans a track closes it, though both its ends be on flanks: it is asked at places
+    between them, those above the `floor`, a depth, mm. Where nothing is in the way a peak is minus infinity.
+    """
+    a, b = body.edges_of(which)
+    start, last = body.points[a], body.points[b]
+    square = np.sum((last - start) ** 2, axis=1)
+    ends = np.minimum(np.minimum(known.worst.excess[a], known.worst.excess[b]), rollers.reached)
+    # below the lesser of its ends' by a quarter of its square at most; ends that are not asked are nan, and may be near
+    open_ = ~(ends > 0.25 * square) & (square > 4.0 * float(rollers.radii.min()) * PLAIN * rollers.tolerance)
+    start, way, square = start[open_], (last - start)[open_], square[open_]
+    parts = np.maximum(LEAST_PARTS, np.ceil(2.0 * np.sqrt(square) / float(rollers.radii.min()))).astype(np.intp)
+    own, more = runs_of(parts - 1)
+    points = start[own] + way[own] * ((more + 1) / parts[own])[:, None]
+    points = points[rollers.intent.form.depth_of(np.hypot(points[:, 0], points[:, 1]), points[:, 2]) < floor]
+    found = rollers.worst(points)
+    met = rollers.at(points, found.theta)
+    off = -rollers.distance(found.excess, rollers.own(met))
+    peaks = []
+    for side in (met.d <= 0.0, met.d > 0.0):
+        rows = np.flatnonzero(side)
+        k = rows[off[rows].argmax()] if len(rows) else -1
+        peaks.append(Peak(float(off[k]), 0.0, float(found.theta[k])) if k >= 0 else Peak(-math.inf, 0.0, math.nan))
+    return peaks[0], peaks[1]
 
 
 def bare(rollers: Rollers, body: Body, known: Known, which: Indices) -> Peak:

@@ -27,6 +27,7 @@ if TYPE_CHECKING:
 
 BLANK, FLOOR, BOTTOM, TOP, BORE = "blank", "floor", "bottom", "top", "bore"
 FINE = 1e-2  # of the tolerance, to which the bore is measured
+PER_PIECE = 64  # places of a piece of the bore's outline
 HALVINGS = 5  # of triangles whose inside is not known well enough
 
 
@@ -165,6 +166,20 @@ def quartered(values: Array) -> Array:
     ab, bc, ca = 0.5 * (a + b), 0.5 * (b + c), 0.5 * (c + a)
     parts = [np.stack(one, axis=1) for one in ((a, ab, ca), (ab, b, bc), (ca, bc, c), (ab, bc, ca))]
     return np.stack(parts, axis=1).reshape(-1, *values.shape[1:])
+
+
+def within_bore(bore: Hole, places: Array) -> float:
+    """How far places (n, 2), mm, seen along z, lie within the outline of a bore at most, mm; 0 where none does."""
+    outline = bore.contour.sample(PER_PIECE)
+    near = places[np.hypot(places[:, 0], places[:, 1]) < np.hypot(outline[:, 0], outline[:, 1]).max()]
+    inside = np.zeros(len(near), dtype=np.bool_)
+    for (x, y), (u, v) in zip(outline, np.roll(outline, -1, axis=0), strict=True):
+        if y != v:
+            passed = (near[:, 1] < y) != (near[:, 1] < v)
+            inside ^= passed & (near[:, 0] < x + (u - x) * (near[:, 1] - y) / (v - y))
+    if not inside.any():
+        return 0.0
+    return float(nearest(bore.contour.as_arcs()[0], near[inside])[1].max())
 
 
 def _off_bore(body: Body, bore: Hole) -> Array:

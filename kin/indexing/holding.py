@@ -72,8 +72,11 @@ def _places(
 ) -> tuple[Array, Indices]:
     """Places (m, 3) in a layer and the numbers (m,) of the steps about whose middle a roller touches them."""
     intent, (share, width) = rollers.intent, about
-    # beside a roller its flanks lie where the rim of its end would be
-    one, other = (intent.form.deepest(place, intent.roller) for place in (intent.inner, intent.outer))
+    # beside a roller its flanks lie where the rim of its end would be; a roller may be longer than the track is deep
+    form = intent.form
+    one, other = (
+        min(max(form.deepest(place, intent.roller), 0.0), form.depth) for place in (intent.inner, intent.outer)
+    )
     level = one + share * (other - one)
     corners = body.corners[which]
     depth = body.depth[corners] - level
@@ -137,13 +140,15 @@ def by_error(rollers: Rollers, side: Side, layer: float | None = None) -> float:
     """
     intent = rollers.intent
     form, radius = intent.form, intent.radius(side)
+    # what of a roller is outside the blank bears nowhere
+    first, last = (place + form.inwards * max(-form.depth_at(place), 0.0) for place in (intent.inner, intent.outer))
     theta = np.arange(ANGLES) * np.float64(TURN / ANGLES)
     psi, slope = rollers.turning.at(theta)
     worst = 0.0
     for k in range(-intent.stops, intent.stops + 1):
         own = psi + k * intent.pitch
         for share in np.linspace(0.0, 1.0, 5):
-            rho = np.full(ANGLES, intent.inner + share * (intent.outer - intent.inner))
+            rho = np.full(ANGLES, first + share * (last - first))
             cost, depth, height = form.costs(rho, (own, slope), side * radius)
             if layer is not None:
                 for _ in range(MEETINGS):

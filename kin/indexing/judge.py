@@ -12,12 +12,13 @@ on which a limit that is not given depends, is sampled; the volume is integrated
 from __future__ import annotations
 
 import math
+from functools import cached_property
 from typing import TYPE_CHECKING
 
 import numpy as np
 
-from kin.indexing.contour import Known, Peak, bare, edges_of, proud
-from kin.indexing.faces import BLANK, BORE, BOTTOM, FLOOR, TOP, Body, plain_offs, sorted_faces
+from kin.indexing.contour import Known, Peak, across, bare, edges_of, proud
+from kin.indexing.faces import BLANK, BORE, BOTTOM, FLOOR, TOP, Body, plain_offs, sorted_faces, within_bore
 from kin.indexing.holding import angles_for, by_error, held
 from kin.indexing.intent import SIDES
 from kin.indexing.rollers import Rollers
@@ -181,11 +182,18 @@ class _Judged:
         told = f"the roller ends {length_words(abs(room), '.3g')} {UNIT} {'above it' if room > 0.0 else 'below it'}"
         check(FLOOR, off[FLOOR], f"from a depth of {length_words(intent.form.depth)} {UNIT} below the blank; {told}")
         checks[-1] = replace(checks[-1], ok=checks[-1].ok and room > 0.0)
-        worst = math.nan if math.isnan(off[BOTTOM] + off[TOP]) else max(off[BOTTOM], off[TOP])
+        worst = math.nan if math.isnan(off[BOTTOM] + off[TOP]) else max(off[BOTTOM], off[TOP], self._beyond())
         check(ENDS, worst, f"from z = {length_words(0.0)} and {length_words(intent.length)} {UNIT}")
         if intent.bore is not None:
             check(BORE, off[BORE], f"from {intent.bore.name}")
         return checks
+
+    def _beyond(self) -> float:
+        """How far triangles of the ends reach out of the blank or into the bore, mm; 0 where none does."""
+        body, bore = self.body, self.rollers.intent.bore
+        corners = body.corners[self.faces.of(BOTTOM) | self.faces.of(TOP)]
+        worst = max(0.0, -float(body.depth[corners].min(initial=math.inf)))
+        return worst if bore is None else max(worst, within_bore(bore, body.points[corners][..., :2].mean(axis=1)))
 
     def flank(self, name: str, side: Side) -> tuple[FlankVerdict, Held | None, list[Check]]:
         """Verdict on one flank, what it holds, and its checks."""
@@ -199,6 +207,7 @@ class _Judged:
         edged = edges_of(rollers, body, known, which)
         asked = np.isfinite(known.distance) & (known.above == (side > 0))
         out = proud(rollers, known, edged, np.flatnonzero(asked & self._beside(which)))
+        out = max(out, self.spans[side > 0], key=lambda peak: peak.value)
         within = bare(rollers, body, known, which)
         check, worst = contour_check(out, within, limit, self.slack)
         count = angles_for(rollers)
@@ -210,6 +219,13 @@ class _Judged:
         motion = motion_error(holds, self._pushed(edged, np.flatnonzero(asked)))
         checks = [check, motion_check(rollers, motion, self.limits, self.slack, by_error(rollers, side))]
         return FlankVerdict(name, motion, worst, len(which)), holds, checks
+
+    @cached_property
+    def spans(self) -> tuple[Peak, Peak]:
+        """How far blank and ends span tracks below a roller and above it, mm."""
+        plain = np.logical_or.reduce([self.faces.of(name) for name in (BLANK, BOTTOM, TOP)])
+        floor = self.rollers.intent.form.depth - self.limits.tolerance - self.slack
+        return across(self.rollers, self.body, self.known, np.flatnonzero(plain), floor)
 
     def _beside(self, which: Indices) -> Mask:
         """Corners (v,) that have to be out of what rollers sweep: of a flank, and of blank and ends above the floor."""

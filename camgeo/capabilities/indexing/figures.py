@@ -214,7 +214,8 @@ def _loaded(design: IndexDesign, search: Search) -> list[Figure]:
 
     def pressed(each: Engaged, index: Array, torque: Array) -> Array:
         bend = each.curvature[np.arange(index.size), index]
-        return line_pressure(torque * each.best[1] * bend, np.ones_like(torque), 1.0, cam, roller)
+        with np.errstate(invalid="ignore"):  # no roller bears, and `borne` leaves it out
+            return line_pressure(torque * each.best[1] * bend, np.ones_like(torque), 1.0, cam, roller)
 
     value, at = search.greatest(lambda rows: borne(rows, pressed))
     return [*found, Figure("contact-pressure", value, "N/mm^2", at)]

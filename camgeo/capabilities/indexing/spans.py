@@ -82,7 +82,8 @@ def _brackets(flank: Flank, w: Array) -> tuple[Array, Array]:
         inside = (z > 0.0) & (z < length)
         if not inside.any():
             problem = f"the {flank.name} flank does not pass between the end faces"
-            raise TrackError(problem, float(theta[theta.size // 2]), "set the turret to the middle of the cam")
+            middle = float(theta[theta.size // 2]) if theta.size else 0.0
+            raise TrackError(problem, middle, "set the turret to the middle of the cam")
         run = np.flatnonzero(inside)
         first, last = int(run[0]), int(run[-1])
         enters = first > 0 and bool(z[first - 1] <= 0.0)

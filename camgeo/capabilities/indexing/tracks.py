@@ -17,13 +17,19 @@ STEPS = 1440  # places of a turn at which a track is known
 
 
 def angles(design: IndexDesign) -> Array:
-    """Shaft angles (n,), rad, at which the roller that stands at the start after no turn may touch the cam."""
+    """Shaft angles (n,), rad, at which the roller that stands at the start after no turn may touch the cam.
+
+    Raises RecipeErrors where a step is so short that there is none.
+    """
     turns = design.turns
     steps = np.arange(turns.start * STEPS, turns.stop * STEPS + 1) * (TURN / STEPS)
     theta = np.unique(np.concatenate([steps, design.law.breaks_over(turns.start, turns.stop - 1)]))
     psi = design.recipe.start + design.law.derivatives(theta, 0)[0]
     low, high = design.spanned
     near = np.flatnonzero((psi >= low) & (psi <= high))
+    if not near.size:
+        problem = f"the turret takes a roller past the cam within {360.0 / STEPS:.6g} degrees"
+        raise design.error("cam.motion", problem, "give a longer rise")
     return theta[near[0] : near[-1] + 1]
 
 

@@ -198,6 +198,48 @@ def test_a_lid_over_the_groove():
     assert {"contour", "volume"} & refused(judged(places, triangles, BARREL.intent))
 
 
+def lids(turret, points):
+    """Sheets of half the tolerance in thickness without a corner in the open, by what they close."""
+    thick, (depth, z) = 0.5 * TOLERANCE, (turret.depth(points), points[:, 2])
+    mouth = points[(z < 1e-9) & (depth > 4.0) & (depth < 9.0)]
+    reach = np.degrees(np.unwrap(np.sort(np.arctan2(mouth[:, 1], mouth[:, 0]))))
+    widest = np.diff(reach).argmax()
+    one, other = (43.5 * np.array([math.cos(a), math.sin(a)]) for a in np.radians(reach[[widest, widest + 1]]))
+    way = other - one
+    bar = manifold3d.Manifold.cube([np.hypot(*way) + 4.0, 1.0, thick], center=True)
+    bar = bar.rotate([0.0, 0.0, math.degrees(math.atan2(way[1], way[0]))])
+    tube = manifold3d.Manifold.cylinder(turret.length, 50.0, 50.0, 720)
+    tube -= manifold3d.Manifold.cylinder(turret.length, 50.0 - thick, 50.0 - thick, 720)
+    # while the turret rests, two rollers stand at 30 degrees: their track has its edges a radius above and below
+    window = manifold3d.Manifold.cube([20.0, 6.0, 20.0], center=True).translate([50.0, 0.0, 65.0 - 60.0 * 0.5])
+    window = window.translate([0.0, 0.0, 60.0 - turret.height]).rotate([0.0, 0.0, 255.0])
+    return {
+        "mouth": bar.translate([*(0.5 * (one + other)).tolist(), 0.5 * thick]),
+        "track": tube ^ window.translate([0.0, 0.0, 5.0]),
+        "bore": manifold3d.Manifold.cylinder(thick, 0.5 * turret.bore + 2.0, 0.5 * turret.bore + 2.0, 24),
+        "beyond": manifold3d.Manifold.cylinder(thick, 60.0, 60.0, 24)
+        - manifold3d.Manifold.cylinder(thick, 49.0, 49.0, 24),
+    }
+
+
+@pytest.mark.costly("a boolean and a verdict for each lid")
+@pytest.mark.parametrize(
+    ("place", "name"), [("mouth", "contour"), ("track", "contour"), ("bore", "ends"), ("beyond", "ends")]
+)
+def test_a_sheet_thinner_than_the_tolerance(place, name):
+    """All its corners are on blank, ends and flanks, and its volume is next to nothing: it is in the way still."""
+    points, corners = mesh(BARREL)
+    found = (solid(points, corners) + lids(BARREL, points)[place]).to_mesh64()
+    places, triangles = np.array(found.vert_properties)[:, :3], np.array(found.tri_verts).astype(np.int64)
+    assert name in refused(judged(places, triangles, BARREL.intent))
+
+
+@pytest.mark.costly("a verdict")
+def test_a_roller_longer_than_the_track_is_deep():
+    """What of it is outside the blank bears nowhere, and is no reason to look there."""
+    assert judged(*mesh(BARREL), changed(BARREL, outer=500.0).intent).ok
+
+
 @FORMS
 def test_the_volume_is_that_of_many_points(turret):
     """The share of points of the blank that no roller sweeps, by the sweep at many angles."""

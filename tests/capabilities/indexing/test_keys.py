@@ -167,6 +167,13 @@ REMEDIES = [
     ),
     (BARREL, ("length: 80", "length: 110"), r"give less than ([\d.]+) mm, with", ("length: 110", "length: {}"), 0.85),
     (BARREL, ("length: 80", "length: 140"), r"give less than ([\d.]+) mm, with", ("length: 140", "length: {}"), 0.85),
+    (
+        BARREL,
+        ("roller: 9", "roller: 9, height: 25"),
+        r"turret\.height: .* give one between ([\d.]+) mm",
+        ("height: 25", "height: {}"),
+        1.1,
+    ),
     (GLOBOID, ("length: 60", "length: 100"), r"give less than ([\d.]+) mm, with", ("length: 100", "length: {}"), 0.9),
     (GLOBOID, ("distance: 90", "distance: 60"), r"give more than ([\d.]+) mm", ("distance: 60", "distance: {}"), 1.2),
     (BARREL, ("roller: 9", "roller: 14"), r"radius of at most ([\d.]+) mm", ("roller: 14", "roller: {}"), 1.0),
@@ -193,6 +200,19 @@ def test_remedies_of_a_size_hold(
     found = re.search(told, str(error.value))
     assert found is not None, str(error.value)
     design_of(changed(text, (size[0], size[1].format(share * float(found[1])))))
+
+
+def test_a_step_between_two_angles_of_a_grid() -> None:
+    """A step so short that the roller is past the cam from one angle to the next is too fast."""
+    text = changed(BARREL, ("over: 150", "over: 0.001"), ("dwell: 210", "dwell: 359.999"), ("length: 80", "length: 30"))
+    with pytest.raises(RecipeErrors, match=r"the turret takes a roller past the cam.*give a longer rise"):
+        design_of(text)
+
+
+def test_a_cam_too_short_to_bear_is_told_without_warnings() -> None:
+    text = changed(BARREL, ("length: 80", "length: 30"), ("  motion", "  drive: {load: 9, material: steel}\n  motion"))
+    failed = [check.name for check in camgeo.design(recipe_of(text)).checks if not check.ok]
+    assert failed == ["contact-length"]
 
 
 def test_rollers_that_meet_the_cam_behind_the_turret() -> None:
