@@ -194,6 +194,7 @@ def test_play_is_the_clearance_by_its_lever() -> None:
     assert "play" not in known(shared_design(BARREL))
 
 
+@pytest.mark.costly("figures over the whole turn")
 def test_rollers_engaged() -> None:
     """In the dwell the rib stands between two rollers: a flank bears on at least one of them."""
     found = known(shared_design(BARREL))

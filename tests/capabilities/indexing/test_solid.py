@@ -237,6 +237,11 @@ def test_a_band_is_covered_once(wide: tuple[float, float]) -> None:
     inner = kinds[count == 2]
     assert np.abs(np.diff(phi[inner], axis=1)).max() <= wide[0]
     assert np.abs(np.diff(h[inner], axis=1)).max() <= wide[1]
+    # but for those beside the lines they are as large as may be
+    own = (np.ptp(phi[found.triangles], axis=1) > 0.99 * wide[0]) & (
+        np.ptp(h[found.triangles], axis=1) > 0.99 * wide[1]
+    )
+    assert math.isinf(wide[1]) or parts[own].sum() > 0.8 * parts.sum()
 
 
 def test_lines_that_cross_are_refused() -> None:
