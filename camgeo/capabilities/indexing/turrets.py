@@ -142,7 +142,7 @@ class BarrelTurret(Turret):
         if not end < steepest:
             most = 2.0 * (pitch * math.sin(steepest) - radius)
             problem = "the rollers stand past the floor's edge before they leave the cam at its ends"
-            lowest, highest = length - 0.5 * most * LESS, 0.5 * most * LESS
+            lowest, highest = form.length - 0.5 * most * LESS, 0.5 * most * LESS
             if lowest < highest:  # as long as it is, with the turret's axis elsewhere
                 return "cam.turret.height", problem, f"give one between {shown(lowest)} and {shown(highest)}"
             remedy = f"give less than {shown(most * LESS)}, with the turret's axis in the middle of it"
