@@ -47,8 +47,8 @@ WITHIN = 1.5e-3  # mm: chords of the file along a line that rises
 
 
 @cache
-def globoid():
-    return camgeo.design(camgeo.load(C16))
+def globoid(text=C16):
+    return camgeo.design(camgeo.load(text))
 
 
 def flank_at(theta, r, upper, z):
@@ -86,7 +86,7 @@ def rows(workshop):
 def test_a_roller_that_is_larger_is_told_apart():
     """A thousandth of a millimetre more is far outside what the rows of c16 may differ by."""
     theta, r, _, upper, z = TOUCHED[0]
-    other = camgeo.design(camgeo.load(C16.replace("roller: 8", "roller: 8.001")))
+    other = globoid(C16.replace("roller: 8", "roller: 8.001"))
     layer = math.hypot(90.0 - r, float(z))
     moved = other.flank(math.radians(theta), layer, upper=upper)[0]
     assert np.linalg.norm(moved - flank_at(theta, r, upper, z)) > 5e-4

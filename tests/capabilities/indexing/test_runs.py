@@ -18,8 +18,8 @@ from capabilities.indexing.made_indexers import BARREL, GLOBOID, changed, recipe
 from support.places import ROOT
 
 import camgeo
-from camgeo.capabilities.indexing.index_page import scene
 from camgeo.capabilities.indexing.library import cam_of, foreseen, remedy
+from camgeo.capabilities.indexing.turning import scene
 from camgeo.cli.main import main
 from camgeo.common.errors import CallError
 from camgeo.recipe.starter import starter
