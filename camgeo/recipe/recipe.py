@@ -51,7 +51,7 @@ if TYPE_CHECKING:
 
 T = TypeVar("T")
 ANGLES = 3600  # of a turn at which files are judged
-OF_ALL_KINDS = ("name", "about", "units", "rotation")  # keys that recipes of all kinds of cams have
+OF_A_KIND = (f"{CAM}.", "part.", "limits.")  # what these keys are depends on the kind of cam
 
 
 @dataclass(frozen=True)
@@ -419,7 +419,9 @@ def _read(source: Source, capabilities: tuple[str, ...]) -> tuple[Reader, Values
     cam = entries(source.root).get(CAM) if isinstance(source.root, Mapping) else None
     if isinstance(cam, Mapping) and "kind" in entries(cam) and not kind_of(cam, CAMS):
         # which keys a kind takes is not known of one that there is not
-        reader.errors = [error for error in reader.errors if error.path in {f"{CAM}.kind", *OF_ALL_KINDS}]
+        reader.errors = [
+            error for error in reader.errors if error.path == f"{CAM}.kind" or not error.path.startswith(OF_A_KIND)
+        ]
     return reader, values
 
 
