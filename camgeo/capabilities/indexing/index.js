@@ -4,12 +4,14 @@ function playIndexer(data, kept = null) {
   const cam = (kept || document).querySelector("#drawing .indexer");
   if (kept) for (const path of cam.querySelectorAll("path:not(.metal)")) path.remove();
   const paths = [...cam.querySelectorAll("path")];
+  const lines = [...document.querySelectorAll("#drawing .contacts path")];
   const TURN = 2 * Math.PI;
   const HALF = 0.5 * Math.PI;
   const { sense, places, length, upright } = data;
 
   function unpacked(row) {
     if ("c" in row) return null;
+    if ("n" in row) return row.n;
     const scale = 10 ** row.d;
     let sum = 0;
     return row.v.map((step) => (sum += step) / scale);
@@ -21,6 +23,7 @@ function playIndexer(data, kept = null) {
     if (v === null) return () => row.c;
     return (x) => {
       const i = Math.min(Math.max(Math.floor(x), 0), v.length - 2);
+      if (v[i] === null || v[i + 1] === null) return NaN; // there is none
       return v[i] + Math.min(Math.max(x - i, 0), 1) * (v[i + 1] - v[i]);
     };
   }
@@ -36,6 +39,7 @@ function playIndexer(data, kept = null) {
       top: (place) => high(place - first),
     };
   });
+  const contacts = data.contacts.map((own) => own.map((line) => line.map(along)));
   const rollers = data.rollers.map(({ beside, z }) => ({ beside: along(beside), z: along(z) }));
   // none beyond those that it has: a picture comes before its development, beside that of another cam
   const developed = [...document.querySelectorAll("#development .roller-at")].slice(0, 3 * rollers.length);
@@ -113,6 +117,11 @@ function playIndexer(data, kept = null) {
       paths[k < n - 1 ? n + 1 + k : 2 * n + 1].setAttribute("d", closed(near(layer, turn)));
     });
     paths[2 * n].setAttribute("d", closed(rims(turn)));
+    contacts.forEach((own, k) => {
+      const ends = own.map((line) => line.map((value) => value(share * data.parts)));
+      const there = ends.filter((line) => line.every(Number.isFinite));
+      lines[k].setAttribute("d", there.map(([x, y, x1, y1]) => path([[x, y], [x1, y1]])).join(""));
+    });
     const [px, width, height, left, top] = data.flat;
     developed.forEach((group, i) => {
       const roller = rollers[Math.floor(i / 3)];

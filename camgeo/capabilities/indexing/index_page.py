@@ -13,7 +13,7 @@ from camgeo.capabilities.indexing.charts import PARTS, development, legend, roll
 from camgeo.capabilities.indexing.engaged import Engaged
 from camgeo.capabilities.indexing.ribs import PLACES, RISE, UPRIGHT, layers
 from camgeo.capabilities.indexing.tables import motion_table
-from camgeo.capabilities.indexing.turning import scene, shares
+from camgeo.capabilities.indexing.turning import scene, shares, touched
 from camgeo.recipe.figures import PRESSURE_ANGLE
 from camgeo.report.page import tables
 from camgeo.report.page.asset import asset
@@ -106,6 +106,13 @@ def _played(design: IndexDesign, of: list[Layer], digits: int) -> dict[str, Any]
         "rollers": [
             {"beside": pack_numbers(beside), "z": pack_numbers(z / mm)}
             for beside, z in (rollers(design, np.linspace(0.0, TURN, PARTS + 1)) if unrolled else [])
+        ],
+        "contacts": [
+            [
+                [pack_numbers(ends[:, k, i, j] / mm, length) for i in (0, 1) for j in (0, 1)]
+                for k in range(ends.shape[1])
+            ]
+            for ends in (touched(design, name, np.linspace(0.0, TURN, PARTS + 1)) for name in design.flanks)
         ],
         "flat": [scale(design) * mm, FIELD, scale(design) * recipe.length, LEFT, TOP],
     }

@@ -7,9 +7,10 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from camgeo.capabilities.indexing.engaged import Engaged
 from camgeo.capabilities.indexing.ribs import RISE, far, layers, near, rims
 from camgeo.curve.ring import Ring
-from camgeo.report.page.scene import STEPS, FilledShape, MovingBody, Scene, pivot, poses, still
+from camgeo.report.page.scene import CONTACTS, STEPS, FilledShape, MovingBody, Scene, pivot, poses, still
 from kin.numeric.angles import TURN
 
 if TYPE_CHECKING:
@@ -40,6 +41,7 @@ def scene(design: IndexDesign, step: int = 0, of: list[Layer] | None = None) -> 
         MovingBody("turret", "follower", (*body, FilledShape("hub", (turret.rim,))), turned),
         MovingBody("rollers", "follower", rollers, turned),
         pivot("pivot", *turret.centre, size, "T"),
+        *(_contacts(design, name, theta[step : step + 1]) for name in design.flanks),
     )
     way = "clockwise" if recipe.rotation == "cw" else "counter-clockwise"
     note = f"seen along the turret's axis; the cam turns {way}, seen from above"
@@ -49,6 +51,29 @@ def scene(design: IndexDesign, step: int = 0, of: list[Layer] | None = None) -> 
 def faced(design: IndexDesign, theta: float) -> float:
     """Polar angle, rad, of the cam as it is computed, that faces the viewer at a shaft angle, rad."""
     return theta + design.recipe.sense * design.recipe.turret.facing
+
+
+def touched(design: IndexDesign, name: str, theta: Array) -> Array:
+    """Both ends of the lines along which a flank bears on rollers at shaft angles (n,), rad, as they are seen.
+
+    They are (n, j, 2, 2): of each of j rollers two places, to the right and up, mm; nan where it is not borne.
+    """
+    engaged, flank, sense = Engaged(design, name, theta), design.flanks[name], design.recipe.sense
+    angles, found = engaged.angles.ravel(), []
+    pose = flank.pose(angles)
+    for rho in engaged.ends:
+        touch = flank.touch(pose, rho.ravel())
+        out, beside, z = flank.place(pose, rho.ravel(), touch.sine, touch.cosine)
+        right = np.hypot(out, beside) * np.sin(sense * np.arctan2(beside, out) - design.recipe.turret.facing)
+        found.append(np.stack([right, z], axis=-1).reshape(*rho.shape, 2))
+    return np.where(engaged.bears[..., None, None], np.stack(found, axis=2), np.nan)
+
+
+def _contacts(design: IndexDesign, name: str, theta: Array) -> MovingBody:
+    """Lines of contact of a flank at one shaft angle (1,), rad."""
+    lines = touched(design, name, theta)[0]
+    rings = tuple(Ring.through(line, closed=False) for line in lines if np.isfinite(line).all())
+    return MovingBody(f"contact {name}", CONTACTS, (FilledShape("contact line", rings),), still())
 
 
 def shares(of: list[Layer]) -> list[float]:

@@ -1,7 +1,7 @@
 """The page of an indexing cam: what it draws is where brute force has it, and its script draws the same; its glb.
 
 Holds: camgeo.capabilities.indexing.ribs, camgeo.capabilities.indexing.turning, camgeo.capabilities.indexing.charts,
-camgeo.capabilities.indexing.actors.
+camgeo.capabilities.indexing.actors, camgeo.report.page.chart.
 """
 
 from __future__ import annotations
@@ -28,7 +28,7 @@ import camgeo
 from camgeo.capabilities.indexing.charts import development
 from camgeo.capabilities.indexing.index_page import script
 from camgeo.capabilities.indexing.ribs import layer, near
-from camgeo.capabilities.indexing.turning import faced, scene
+from camgeo.capabilities.indexing.turning import faced, scene, touched
 
 if TYPE_CHECKING:
     from pathlib import Path
@@ -299,3 +299,38 @@ def test_rollers_of_a_globoid_turn_in_its_throat_in_a_viewer(tmp_path: Path) -> 
         wanted = np.column_stack([90.0 - 55.5 * np.cos(psi), np.zeros(8), 30.0 + 55.5 * np.sin(psi)])
         middles = found[step].reshape(8, -1, 3).mean(axis=1)
         assert np.linalg.norm(wanted[:, None] - middles[None], axis=2).min(axis=1).max() < 1e-3
+
+
+@pytest.mark.parametrize("text", [BARREL, CCW + BARREL, LEADING])
+def test_at_rest_a_barrel_is_touched_above_and_below_each_roller(text: str) -> None:
+    design = shared_design(text)
+    recipe = design.recipe
+    form, radius, rest = recipe.form, recipe.roller.radius, math.radians(300.0)
+    for name, way in (("lower", -1.0), ("upper", 1.0)):
+        lines = touched(design, name, np.array([rest]))[0]
+        lines = lines[np.isfinite(lines).all(axis=(1, 2))]
+        assert len(lines) == 2
+        for line in lines:
+            up = [side * form.pitch * math.sin(math.pi / recipe.stops) for side in (-1.0, 1.0)]
+            height = min((form.height + each + way * radius for each in up), key=lambda z: abs(z - line[0, 1]))
+            beside = form.offset - form.side * form.pitch * math.cos(math.pi / recipe.stops)
+            assert line[:, 0] == pytest.approx([recipe.sense * beside] * 2, abs=1e-9)
+            assert line[:, 1] == pytest.approx([height] * 2, abs=1e-9)
+
+
+def test_lines_of_contact_of_a_globoid_lie_beside_its_rollers() -> None:
+    design = shared_design(GLOBOID)
+    recipe = design.recipe
+    radius, rest = recipe.roller.radius, math.radians(330.0)
+    centre, half = np.array(recipe.turret.drawn(recipe.roller, recipe.stops, recipe.sense).centre), 0.5
+    for name, way in (("lower", -1.0), ("upper", 1.0)):
+        lines = touched(design, name, np.array([rest]))[0]
+        lines = lines[np.isfinite(lines).all(axis=(1, 2))]
+        assert len(lines) == 2
+        places = sorted(lines.tolist(), key=lambda line: line[0][1])
+        for line, turn in zip(places, (-half, half), strict=True):
+            psi = turn * 2.0 * math.pi / recipe.stops
+            along, across = np.array([-math.cos(psi), math.sin(psi)]), np.array([math.sin(psi), math.cos(psi)])
+            seen = (np.array(line) - centre) * [math.copysign(1.0, centre[0]), 1.0]
+            assert seen @ across == pytest.approx([way * radius] * 2, abs=1e-9)
+            assert seen[0] @ along == pytest.approx(recipe.roller.inner, abs=0.2)
