@@ -36,6 +36,7 @@ if TYPE_CHECKING:
     from camgeo.capabilities.indexing.design import IndexDesign
 
 CCW = "rotation: ccw\n"
+MIDDLE = 0.5 * (49.0 + math.sqrt(62.0**2 - 8.0**2))  # of a roller of the globoid, mm from the turret's axis
 LEADING = changed(BARREL, ("roller: 9}", "roller: 9, side: leading}"))
 INCHES = """units: inch
 cam:
@@ -81,7 +82,10 @@ def test_rollers_of_a_barrel_are_where_the_dial_takes_them(
 
 @pytest.mark.parametrize("head", ["", CCW])
 def test_rollers_of_a_globoid_point_at_its_axis(head: str) -> None:
-    """The cam's axis is at the left; a roller at psi reaches from 49 to 62 mm along -cos psi and sin psi."""
+    """The cam's axis is at the left; a roller at psi reaches from 49 mm along -cos psi and sin psi.
+
+    The rim of its end, 8 mm beside its axis, is 62 mm from the turret's.
+    """
     body = next(body for body in scene(shared_design(head + GLOBOID)).bodies if body.name == "rollers")
     for step in (0, 100, 400):
         psi = -math.pi / 8.0 + advance(np.array([math.radians(0.5 * step)]), 8, 120.0)[0]
@@ -92,7 +96,7 @@ def test_rollers_of_a_globoid_point_at_its_axis(head: str) -> None:
             assert max(sides.tolist()) == pytest.approx(16.0)
             middles.append(corners.mean(axis=0))
         ways = psi + math.tau * np.arange(8) / 8.0
-        wanted = np.column_stack([90.0 - 55.5 * np.cos(ways), 30.0 + 55.5 * np.sin(ways)])
+        wanted = np.column_stack([90.0 - MIDDLE * np.cos(ways), 30.0 + MIDDLE * np.sin(ways)])
         away = np.linalg.norm(wanted[:, None] - np.array(middles)[None], axis=2)
         assert away.min(axis=1).max() < 1e-9
 
@@ -296,7 +300,7 @@ def test_rollers_of_a_globoid_turn_in_its_throat_in_a_viewer(tmp_path: Path) -> 
     found = turned(written(CCW + GLOBOID, tmp_path), "rollers")
     for step in (0, 40, 100):
         psi = -math.pi / 8.0 + advance(np.array([math.radians(step)]), 8, 120.0)[0] + math.tau * np.arange(8) / 8.0
-        wanted = np.column_stack([90.0 - 55.5 * np.cos(psi), np.zeros(8), 30.0 + 55.5 * np.sin(psi)])
+        wanted = np.column_stack([90.0 - MIDDLE * np.cos(psi), np.zeros(8), 30.0 + MIDDLE * np.sin(psi)])
         middles = found[step].reshape(8, -1, 3).mean(axis=1)
         assert np.linalg.norm(wanted[:, None] - middles[None], axis=2).min(axis=1).max() < 1e-3
 
