@@ -18,6 +18,7 @@ from camgeo.capabilities.indexing.tracks import track
 if TYPE_CHECKING:
     from camgeo.capabilities.indexing.design import IndexDesign
     from camgeo.capabilities.indexing.forms import Number, Vector
+    from kin.numeric.arrays import Array
 
 LAYERS, EACH, STEPS = 3, 6, 121  # of a flank: layers, one of so many places, and angles about each
 AROUND = 1.5  # radii of a roller by the radius of the core: angle, rad, over which it passes a place
@@ -31,11 +32,12 @@ def other_half(design: IndexDesign) -> tuple[float, float]:
     form = design.recipe.form
     flank = min(design.flanks.values(), key=lambda each: each.radius)
     wide = min(AROUND * design.largest / form.core, 0.5 * math.pi)
-    steps, best = np.linspace(-wide, wide, STEPS), (math.inf, 0.0)
+    best = (math.inf, 0.0)
+    steps: Array = np.linspace(-wide, wide, STEPS)
     for w in np.linspace(*design.recipe.layers, LAYERS).tolist():
         theta, rows = track(design, flank.name, w)
         inside = np.flatnonzero((rows.z > 0.0) & (rows.z < form.length))[::EACH]
-        at = (theta[inside, None] + steps).ravel()
+        at: Array = (theta[inside, None] + steps).ravel()
         z, phi = (np.repeat(each[inside], STEPS) for each in (rows.z, rows.phi))
         r, pose, lean = form.beside(w, z), flank.pose(at), form.lean(flank.psi(at))
         along, _, way = form.axes(pose, -np.sin(lean), np.cos(lean))
