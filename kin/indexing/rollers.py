@@ -251,15 +251,28 @@ class Rollers:
         off = np.arctan2(v, u) - psi
         psi += pitch * np.rint(off * (1.0 / pitch))
         a, b = form.beside(y, u, v, psi)
+        start_u, start_v = u, v
         y, u, v, _ = self._turned(last, nodes)
         c, d = form.beside(y, u, v, psi)
         c -= a
         d -= b
         length = c * c + d * d
-        share = np.clip(-(a * c + b * d) / np.where(length > 0.0, length, 1.0), 0.0, 1.0)
-        a += share * c
-        b += share * d
-        return np.asarray(a * a + b * b - self._squares(off))
+        share = -(a * c + b * d) / np.where(length > 0.0, length, 1.0)
+
+        def square(low: Array | float, high: Array | float) -> Array:
+            within = np.clip(share, low, high)
+            return np.asarray((a + within * c) ** 2 + (b + within * d) ** 2)
+
+        if self.radii[0] == self.radii[1]:
+            return square(0.0, 1.0) - float(self.radii[0] ** 2)
+        # an edge that passes from below the roller to above it is held against a gauge on either side
+        up, out = np.cos(psi), np.sin(psi)
+        begins, ends = start_v * up - start_u * out, v * up - u * out
+        passes = begins * ends < 0.0
+        part = np.where(passes, begins / np.where(passes, begins - ends, 1.0), 1.0)
+        one, other = (np.where(each > 0.0, *np.square(self.radii[::-1])) for each in (begins, ends))
+        beyond = np.where(passes, square(part, 1.0) - other, np.inf)
+        return np.asarray(np.minimum(square(0.0, part) - one, beyond))
 
     def _least(self, low: Array, high: Array, level: int, excess: Callable[[Indices, Indices], Array]) -> Worst:
         """Least excess over angles from low to high (n,), from a level on; `excess` gives it by rows and angles."""

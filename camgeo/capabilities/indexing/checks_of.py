@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from camgeo.capabilities.indexing.figures import bears
+from camgeo.capabilities.indexing.figures import Search, bears, contact_length
 from camgeo.capabilities.indexing.keys import LENGTH, RIB
 from camgeo.measures.placed import figure_check, limits_and_wall
 from camgeo.measures.rule_remark import RuleRemark
@@ -29,18 +29,35 @@ def design_checks(design: IndexDesign, figures: Sequence[Figure]) -> list[Check]
     """Checks that need no file; a figure that nothing limits is reported without a limit."""
     known = {figure.name: figure for figure in figures}
     checks = [figure_check(PRESSURE_ANGLE, known[PRESSURE_ANGLE], None, "at_most", at_unit="deg")]
-    roller = design.recipe.roller
-    length = figure_check(LENGTH, known[LENGTH], SHORTEST * (roller.outer - roller.inner), "at_least", at_unit="deg")
+    length = figure_check(LENGTH, known[LENGTH], _shortest(design), "at_least", at_unit="deg")
     if not length.ok:
         free = "no roller bears on a flank there, and the turret is free"
         why = free if not known[LENGTH].value > 0.0 else "a roller bears on a flank with little more than its rim there"
-        length = replace(length, detail=f"{why}: give more stops, or a longer cam")
+        length = replace(length, detail=f"{why}: {_longer(design)}")
     checks.append(length)
     checks.append(figure_check(RIB, known[RIB], 0.0, "at_least", at_unit="deg"))
     wall, where = min(walls(design))
     least = design.recipe.part.wall
     holds = wall > 0.0 if least is None else wall >= least - ROUNDING
     return [*checks, Check(LEAST_WALL, holds, wall, least or 0.0, "mm", sense="at_least", detail=where)]
+
+
+def _shortest(design: IndexDesign) -> float:
+    """Least length, mm, on which a roller has to bear."""
+    inner, outer = design.bearing
+    return SHORTEST * (outer - inner)
+
+
+def _longer(design: IndexDesign) -> str:
+    """What would let rollers bear: a place where they begin and end, where that alone is at fault."""
+    recipe = design.recipe
+    inner, outer = recipe.turret.usual(recipe.roller.radius)
+    if inner < outer and (inner < recipe.roller.inner or recipe.roller.outer < outer):
+        fuller = design.rolled(min(inner, recipe.roller.inner), max(outer, recipe.roller.outer))
+        if contact_length(Search(fuller)).value >= _shortest(fuller):
+            shown = [f"{value / recipe.mm:.6g}" for value in (fuller.recipe.roller.inner, fuller.recipe.roller.outer)]
+            return f"let it bear from {shown[0]} to {shown[1]} {recipe.units}, by turret.from and to"
+    return "give more stops, or a longer cam"
 
 
 def walls(design: IndexDesign) -> list[tuple[float, str]]:

@@ -45,6 +45,10 @@ class IndexDesign:
         recipe = self.recipe
         return replace(self, recipe=replace(recipe, roller=replace(recipe.roller, radius=radius)))
 
+    def cleared(self, clearance: float) -> IndexDesign:
+        """The same cam with another clearance, mm, below 0 a preload."""
+        return replace(self, recipe=replace(self.recipe, clearance=clearance))
+
     def shortened(self, length: float) -> IndexDesign:
         """The same cam of another length, mm, with the turret's axis in its middle."""
         recipe, turret = self.recipe, self.recipe.turret
@@ -55,6 +59,17 @@ class IndexDesign:
     def largest(self) -> float:
         """Radius of the roller of that flank, mm, whose roller is larger."""
         return self.recipe.roller.radius + max(self.recipe.clearance, 0.0)
+
+    @property
+    def bearing(self) -> tuple[float, float]:
+        """Places along a roller, mm, between which it may touch the metal: where it bears, within the blank's reach."""
+        roller, (low, high) = self.recipe.roller, self.recipe.form.reach(self.largest)
+        return max(roller.inner, low), min(roller.outer, high)
+
+    def rolled(self, inner: float, outer: float) -> IndexDesign:
+        """The same cam for rollers that bear from `inner` to `outer`, mm."""
+        recipe = self.recipe
+        return replace(self, recipe=replace(recipe, roller=replace(recipe.roller, inner=inner, outer=outer)))
 
     @property
     def spanned(self) -> tuple[float, float]:

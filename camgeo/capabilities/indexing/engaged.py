@@ -34,8 +34,8 @@ class Engaged:
     def ends(self) -> tuple[Array, Array]:
         """Places (n, j), mm, along the rollers between which the flank bears; equal where it does not."""
         recipe, flank, theta = self.design.recipe, self.design.flanks[self.name], self.angles.ravel()
-        roller, form, (low, high) = recipe.roller, recipe.form, self.design.spanned
-        rho = np.linspace(roller.inner, roller.outer, ALONG)
+        form, (low, high), bearing = recipe.form, self.design.spanned, self.design.bearing
+        rho = np.linspace(*bearing, ALONG)
         contact = flank.contact(theta, flank.pose(theta), rho[:, None])
         beside = np.minimum(contact.z, form.length - contact.z)
         margin = np.minimum(beside, np.sign(form.blank - form.floor) * (form.blank - contact.w))
@@ -52,7 +52,7 @@ class Engaged:
             return np.asarray(rho[within] + np.clip(share, 0.0, 1.0) * (rho[out] - rho[within]))
 
         begin, end = crossing(before, first), crossing(behind, last)
-        return np.where(some, begin, roller.inner), np.where(some, end, roller.inner)
+        return np.where(some, begin, bearing[0]), np.where(some, end, bearing[0])
 
     @cached_property
     def length(self) -> Array:

@@ -46,8 +46,7 @@ def figures_of(design: IndexDesign) -> list[Figure]:
         for name, share in ((PRESSURE_ANGLE, (0.0, 1.0)), (MIDDLE, (0.5,)), (INNER, (0.0,)), (OUTSIDE, (1.0,)))
     ]
     found.append(search.angle(ANY, _any))
-    value, at = search.greatest(lambda rows: -_least(rows, lambda each: each.length.max(axis=1)))
-    found.append(Figure(LENGTH, -value, "mm", at))
+    found.append(contact_length(search))
     for name, sign in ((LEAST, -1.0), (MOST_ENGAGED, 1.0)):
         value, at = search.greatest(partial(_engaged, sign=sign))
         found.append(Figure(name, sign * value, "", at))
@@ -93,6 +92,12 @@ class Search:
         """Figure of an angle, from its values in rad."""
         value, at = self.greatest(figure)
         return Figure(name, math.degrees(value) if value > -math.inf else math.nan, "deg", at)
+
+
+def contact_length(search: Search) -> Figure:
+    """Least length, mm, over the turn, of the longest line along which a flank bears on a roller."""
+    value, at = search.greatest(lambda rows: -_least(rows, lambda each: each.length.max(axis=1)))
+    return Figure(LENGTH, -value, "mm", at)
 
 
 def _known(values: Array) -> Array:

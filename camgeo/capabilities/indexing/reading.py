@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any, Literal
 from camgeo.capabilities.indexing.forms import Barrel, Globoid
 from camgeo.capabilities.indexing.index_recipe import Drive, IndexRecipe
 from camgeo.capabilities.indexing.keys import FILES, FLOOR_GAP, RECIPE
-from camgeo.capabilities.indexing.turrets import BarrelTurret, GloboidTurret, Roller
+from camgeo.capabilities.indexing.turrets import BarrelTurret, GloboidTurret, Roller, reaching
 from camgeo.common.rounding import downward, upward
 from camgeo.motions.motion import check_filled
 from camgeo.part import bore
@@ -41,6 +41,7 @@ NOT_YET = {
 FORMATS_NOT_YET = ("svg", "step", "gcode")
 NOTHING = 1e-9  # mm: a length below it is none
 APART = 0.8  # of the distance in a globoid's throat from a roller's axis to the next one, that a roller may fill
+LEAST_ROLLER = 0.01  # of a barrel's radius or a globoid's distance: the time of a proof grows with its inverse
 STEEPEST_END = math.sin(math.radians(80.0))  # of a globoid's end face, seen from the turret's axis
 
 
@@ -181,13 +182,8 @@ def _ends(cam: Values) -> tuple[float, float]:
         inner, outer = blank - depth + FLOOR_GAP, blank
     else:
         blank = cam["globoid"]["radius"]
-        inner, outer = blank, _reaching(blank + depth - FLOOR_GAP, turret["roller"])
+        inner, outer = blank, reaching(blank + depth - FLOOR_GAP, turret["roller"])
     return turret.get("from", inner), turret.get("to", outer)
-
-
-def _reaching(layer: float, roller: float) -> float:
-    """Distance of a roller's flat end from a globoid's turret, mm, whose rim reaches a layer, mm; 0 where none does."""
-    return math.sqrt(max(layer * layer - roller * roller, 0.0))
 
 
 def _check_roller(values: Values, reader: Reader) -> None:
@@ -197,7 +193,7 @@ def _check_roller(values: Values, reader: Reader) -> None:
     barrel = "barrel" in cam
     blank = cam["barrel" if barrel else "globoid"]["radius"]
     floor = blank - cam["depth"] if barrel else blank + cam["depth"]
-    deepest = floor if barrel else _reaching(floor, turret["roller"])
+    deepest = floor if barrel else reaching(floor, turret["roller"])
     if barrel and not begins > floor:
         remedy = f"give more than {_shown(floor, reader)}, or a greater depth"
         reader.fault_at(f"{path}.from", "the roller's end stands on the floor", _shown(begins, reader), remedy)
@@ -212,6 +208,12 @@ def _check_roller(values: Values, reader: Reader) -> None:
         rim = 0.0 if barrel else math.hypot(begins, turret["roller"]) - begins
         remedy = remedy if at != "cam.depth" else f"give more than {_more(FLOOR_GAP + rim, reader)}"
         reader.fault_at(at, "the roller bears nowhere", None, remedy)
+    least = LEAST_ROLLER * (blank if barrel else cam["globoid"]["distance"])
+    if turret["roller"] < least:
+        problem = f"too small beside the cam: it is less than {100.0 * LEAST_ROLLER:g} percent of "
+        problem += "the blank's radius" if barrel else "the distance of both axes"
+        remedy = f"give at least {_more(least, reader)}"
+        reader.fault_at(f"{path}.roller", problem, _shown(turret["roller"], reader), remedy)
     half = math.pi / turret["stops"]
     if barrel:
         room = turret["radius"] * math.sin(half)

@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from camgeo.capabilities.indexing.pressed import other_half
 from camgeo.capabilities.indexing.spans import TrackError, demand_ends
 from camgeo.capabilities.indexing.tracks import rib_thickness, track
 from camgeo.capabilities.indexing.undercut import demand_regular
@@ -24,6 +25,7 @@ if TYPE_CHECKING:
 
 LAYERS = 5  # in which undercut is sought
 SHARP = 1e-3  # of a radius in a remedy
+CLEAR = 1.01  # radii of a roller in a remedy, between its axis and the flank that its other half passes
 ROLLER = "cam.turret.roller"
 
 
@@ -60,7 +62,29 @@ def demand_sound(design: IndexDesign) -> None:
     if not thin > 0.0:
         problem = f"the rollers leave no rib between them, near {math.degrees(at) % 360.0:.6g} degrees"
         raise design.error(ROLLER, problem, _smaller(design, lambda other: rib_thickness(other)[0] > 0.0))
+    _demand_parted(design)
     _demand_proved(design)
+
+
+def _demand_parted(design: IndexDesign) -> None:
+    """Raise RecipeErrors where a clearance or a preload is so large that one half of a roller meets the other flank."""
+    recipe = design.recipe
+    if recipe.clearance == 0.0:
+        return
+    off, at = other_half(design)
+    if off >= design.largest:
+        return
+    sign, word = (1.0, "clearance") if recipe.clearance > 0.0 else (-1.0, "preload")
+
+    def sound(size: float) -> bool:
+        other = design.cleared(sign * size)
+        return other_half(other)[0] >= CLEAR * other.largest
+
+    size, mm = _largest(abs(recipe.clearance), sound), recipe.mm
+    half, name = ("upper", "lower") if sign > 0.0 else ("lower", "upper")
+    problem = f"the {half} half of a roller meets the {name} flank, near {math.degrees(at) % 360.0:.6g} degrees"
+    remedy = f"give at most {downward(size / mm, 4)} {recipe.units}" if size > 0.0 else "leave it out"
+    raise design.error(f"cam.turret.{word}", problem, remedy)
 
 
 def _demand_proved(design: IndexDesign) -> None:

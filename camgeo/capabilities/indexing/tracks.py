@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -14,18 +15,24 @@ if TYPE_CHECKING:
     from kin.numeric.arrays import Array
 
 STEPS = 1440  # places of a turn at which a track is known
+PASSED = 8  # of these places that a roller has to be within the cam at least
 
 
 def angles(design: IndexDesign) -> Array:
     """Shaft angles (n,), rad, at which the roller that stands at the start after no turn may touch the cam.
 
-    Raises RecipeErrors where a step is so short that there is none.
+    Raises RecipeErrors where a step is so short that there are next to none.
     """
     turns = design.turns
     steps = np.arange(turns.start * STEPS, turns.stop * STEPS + 1) * (TURN / STEPS)
     theta = np.unique(np.concatenate([steps, design.law.breaks_over(turns.start, turns.stop - 1)]))
     psi = design.recipe.start + design.law.derivatives(theta, 0)[0]
     low, high = design.spanned
+    way = np.abs(np.diff(psi))
+    if PASSED * float(way.max()) > high - low:
+        at = math.degrees(theta[int(way.argmax())]) % 360.0
+        problem = f"the turret takes a roller past the cam within {PASSED * 360.0 / STEPS:.6g} degrees"
+        raise design.error("cam.motion", f"{problem}, near {at:.6g} degrees", "give a longer rise")
     near = np.flatnonzero((psi >= low) & (psi <= high))
     if not near.size:
         problem = f"the turret takes a roller past the cam within {360.0 / STEPS:.6g} degrees"

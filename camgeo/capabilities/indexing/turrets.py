@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, ClassVar, NamedTuple
 
 import numpy as np
 
+from camgeo.capabilities.indexing.keys import FLOOR_GAP
 from camgeo.curve.ring import Ring, bar, disc
 from kin.numeric.angles import TURN
 from kin.numeric.records import dataclass
@@ -23,6 +24,11 @@ HUB, SPOKE = 0.25, 0.4  # of the pitch radius, and of a roller's radius: hub and
 GAP = 0.2  # radii of a roller between a blank and the plate before it
 STUD, INNER_END = 0.7, 0.97  # of a roller's radius, and of the hub's: half width and inner end of the stud of a roller
 LESS = 0.999  # of a greatest length, in a remedy
+
+
+def reaching(layer: float, roller: float) -> float:
+    """Distance of a roller's flat end from a globoid's turret, mm, whose rim reaches a layer, mm; 0 where none does."""
+    return math.sqrt(max(layer * layer - roller * roller, 0.0))
 
 
 class Drawn(NamedTuple):
@@ -106,6 +112,10 @@ class Turret(ABC):
         """Bars to look at, of so many rollers."""
 
     @abstractmethod
+    def usual(self, radius: float) -> tuple[float, float]:
+        """Where rollers of a radius, mm, begin and end to bear, mm, where a recipe does not say."""
+
+    @abstractmethod
     def intended(self) -> Form:
         """The form in kin's words."""
 
@@ -178,6 +188,11 @@ class BarrelTurret(Turret):
         rollers = tuple(Bar((x, y, roller.inner), (x, y, roller.outer), roller.radius) for x, y in places)
         return Standing((plate, *studs), rollers, (1.0, 0.0, 0.0), (0.0, 1.0, 0.0))
 
+    def usual(self, radius: float) -> tuple[float, float]:
+        """From just over the floor to the blank."""
+        del radius
+        return self.form.floor + FLOOR_GAP, self.form.blank
+
     def intended(self) -> Form:
         """Kin's barrel."""
         from kin.indexing.intent import Barrel as Intended
@@ -239,6 +254,10 @@ class GloboidTurret(Turret):
         studs = tuple(radial(INNER_END * hub, roller.inner, STUD * half, angle) for angle in angles)
         rollers = tuple(radial(roller.inner, roller.outer, half, angle) for angle in angles)
         return Standing((wheel, *studs), rollers, (0.0, -1.0, 0.0), (1.0, 0.0, 0.0))
+
+    def usual(self, radius: float) -> tuple[float, float]:
+        """From the blank to where the rim of the roller's end stands just off the floor."""
+        return self.form.blank, reaching(self.form.floor - FLOOR_GAP, radius)
 
     def intended(self) -> Form:
         """Kin's globoid."""

@@ -230,6 +230,14 @@ def test_checks_and_remarks() -> None:
     assert section["offset"] == pytest.approx(30.0 * (1.0 + math.cos(math.pi / 6)))
 
 
+def test_rollers_that_reach_out_of_the_blank_bear_within_it() -> None:
+    """However far they go on, they bear as those that end at the blank."""
+    one, other = (design_of(changed(BARREL, ("roller: 9", f"roller: 9, to: {to}"))) for to in (50, 500))
+    assert known(other)["contact-length"] == pytest.approx(known(one)["contact-length"])
+    limits = [design_checks(each, figures_of(each))[1].limit for each in (one, other)]
+    assert limits == pytest.approx([0.15 * 12.5] * 2)
+
+
 def test_a_cam_too_short_for_its_turret_is_told() -> None:
     """Where no roller bears on a flank the check of the line of contact fails, and says what serves."""
     text = changed(BARREL, ("length: 80", "length: 36"))

@@ -107,6 +107,36 @@ def test_an_edge_is_as_deep_as_its_worst_place(turret):
     assert (found.excess - found.open >= least - 2e-3).all()
 
 
+@pytest.mark.parametrize("clearance", [-1.2, 0.25])
+def test_an_edge_from_one_half_of_a_roller_to_the_other_is_held_against_both(clearance):
+    """Edges of a steep flank pass from above the axis to below it: the larger half is nowhere in their way.
+
+    Each place of an edge is held against the half that it is on, at all angles of a grid, by distances alone.
+    """
+    turret = changed(Turret(), clearance=clearance, length=80.0, height=40.0)
+    side, more = (1, clearance) if clearance < 0.0 else (-1, 0.0)  # the flank of the smaller roller
+    theta = np.radians(np.arange(0.0, 150.0, 2.0))
+    start, last = (turret.contact(theta + by, np.full(75, 37.5), side, more) for by in (0.0, 0.04))
+    start, last = start - [0.0, 0.0, 40.0], last - [0.0, 0.0, 40.0]
+    within = (np.abs(start[:, 2]) < 40.0) & (np.abs(last[:, 2]) < 40.0)
+    start, last = start[within], last[within]
+    rollers = Rollers(turret.intent, 1e-3)
+    found = rollers.edges(start, last, (rollers.worst(start), rollers.worst(last))).excess
+    places = (start[:, None] + np.linspace(0.0, 1.0, 41)[:, None] * (last - start)[:, None]).reshape(-1, 3)
+    least = np.full(len(places), np.inf)
+    offset, pitch = turret.form.offset, turret.form.pitch
+    for angle in np.arange(0.0, TURN, TURN / 3600):
+        x = places[:, 0] * math.cos(angle) + places[:, 1] * math.sin(angle)
+        y = places[:, 1] * math.cos(angle) - places[:, 0] * math.sin(angle)
+        for k in range(turret.stops):
+            psi = float(turret.psi(np.array([angle]))[0]) + k * TURN / turret.stops
+            right, up = offset - y - pitch * math.cos(psi), places[:, 2] - pitch * math.sin(psi)
+            above = up * math.cos(psi) - right * math.sin(psi) > 0.0
+            square = right**2 + up**2 - np.where(above, turret.roller + clearance, turret.roller) ** 2
+            least = np.minimum(least, np.where(x > 0.0, square, np.inf))
+    np.testing.assert_allclose(found, least.reshape(-1, 41).min(axis=1), atol=0.05)
+
+
 def test_the_turret_goes_one_place_on_in_a_turn():
     turret = Turret()
     turning = Turning(turret.intent.law, turret.start)

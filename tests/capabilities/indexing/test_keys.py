@@ -2,7 +2,7 @@
 
 Holds: camgeo.capabilities.indexing.reading, camgeo.capabilities.indexing.keys,
 camgeo.capabilities.indexing.index_recipe, camgeo.capabilities.indexing.soundness,
-camgeo.capabilities.indexing.exact.
+camgeo.capabilities.indexing.exact, camgeo.capabilities.indexing.pressed.
 """
 
 from __future__ import annotations
@@ -11,8 +11,17 @@ import math
 import re
 from typing import TYPE_CHECKING
 
+import numpy as np
 import pytest
-from capabilities.indexing.made_indexers import BARREL, GLOBOID, changed, design_of, recipe_of, shared_design
+from capabilities.indexing.made_indexers import (
+    BARREL,
+    GLOBOID,
+    changed,
+    design_of,
+    recipe_of,
+    rollers_of,
+    shared_design,
+)
 
 import camgeo
 from camgeo.recipe.recipe import load_text
@@ -67,6 +76,15 @@ REFUSED = [
         "stands on the floor, given 37 mm; give more than 37 mm, or a greater",
     ),
     (BARREL, ("roller: 9", "roller: 9, from: 37.1"), None),
+    # a hundredth of the radius of 50, and of the distance of 90
+    (
+        BARREL,
+        ("roller: 9", "roller: 1e-9"),
+        "too small beside the cam: it is less than 1 percent of the blank's radius",
+    ),
+    (BARREL, ("roller: 9", "roller: 0.01"), "given 0.01 mm; give at least 0.5 mm"),
+    (BARREL, ("roller: 9", "roller: 0.5"), None),
+    (GLOBOID, ("roller: 8", "roller: 0.8"), "percent of the distance of both axes, given 0.8 mm; give at least 0.9 mm"),
     (BARREL, ("roller: 9", "roller: 9, from: 40, to: 39"), "bears nowhere; let it bear between 37 mm and 50 mm"),
     # 62.5^2 = 61.98588^2 + 8^2, and 49^2 + 8^2 = 49.64877^2
     (
@@ -207,6 +225,63 @@ def test_a_step_between_two_angles_of_a_grid() -> None:
     text = changed(BARREL, ("over: 150", "over: 0.001"), ("dwell: 210", "dwell: 359.999"), ("length: 80", "length: 30"))
     with pytest.raises(RecipeErrors, match=r"the turret takes a roller past the cam.*give a longer rise"):
         design_of(text)
+
+
+def test_a_step_between_two_angles_of_a_long_cam() -> None:
+    """The motion is at fault, not the length, and a longer rise serves."""
+    text = changed(BARREL, ("over: 150", "over: 0.001"), ("dwell: 210", "dwell: 359.999"))
+    with pytest.raises(RecipeErrors, match=r"cam\.motion: the turret takes a roller past the cam.*give a longer rise"):
+        design_of(text)
+
+
+def test_a_roller_that_hardly_reaches_in_is_told_where_to_bear() -> None:
+    """What the check names holds it."""
+
+    def failing(place: str) -> list[str]:
+        recipe = recipe_of(changed(BARREL, ("roller: 9", f"roller: 9, {place}")))
+        return [check.detail for check in camgeo.design(recipe).checks if not check.ok]
+
+    (told,) = failing("from: 49.999")
+    assert told.endswith("let it bear from 37.5 to 50 mm, by turret.from and to")
+    assert failing("from: 37.5, to: 50") == []
+
+
+@pytest.mark.costly("a search for a size, and a cam of it")
+@pytest.mark.parametrize(
+    ("key", "words"),
+    [
+        ("preload: {}", "the lower half of a roller meets the upper"),
+        ("clearance: {}", "the upper half of a roller meets"),
+    ],
+)
+def test_halves_of_a_roller_that_meet_the_other_flank(key: str, words: str) -> None:
+    """The greatest that is named makes a cam, and by positions the other half stays clear; a third more does not.
+
+    A place of the flank of the smaller roller is looked at at all angles at which it is on the other side of the axis.
+    """
+    text = changed(BARREL, ("roller: 9", f"roller: 8, {key}"))
+    with pytest.raises(RecipeErrors) as error:
+        design_of(changed(text, ("{}", "0.8" if key.startswith("clear") else "2")))
+    assert words in str(error.value)
+    found = re.search(r"give at most ([\d.]+) mm", str(error.value))
+    assert found is not None, str(error.value)
+    design = design_of(changed(text, ("{}", found[1])))
+    small = min(design.flanks.values(), key=lambda each: each.radius)
+    rollers, sizes = rollers_of(design, 150.0), vars(design.recipe.form)
+    every, clear = np.linspace(-0.5, 3.5, 8001), []
+    for start in np.radians(np.arange(0.0, 150.0, 10.0)).tolist():
+        row = small.on(np.array([start]), 37.0)
+        if not 0.0 < float(row.z[0]) < 80.0:
+            continue
+        point = np.array([[37.0 * math.cos(row.phi[0]), 37.0 * math.sin(row.phi[0]), row.z[0]]])
+        psi = rollers.psi(every)
+        across = point[0, 1] * np.cos(every) - point[0, 0] * np.sin(every)
+        beside = across - sizes["offset"]
+        beta = np.arctan2(point[0, 2] - sizes["height"], -sizes["side"] * beside)
+        other = np.sin(beta - psi) * small.side < 0.0
+        clear.append(float(rollers.away(point, every)[0][other].min(initial=math.inf)))
+    assert len(clear) > 5
+    assert min(clear) > design.largest
 
 
 def test_a_cam_too_short_to_bear_is_told_without_warnings() -> None:
