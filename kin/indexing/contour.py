@@ -161,10 +161,15 @@ def bare(rollers: Rollers, body: Body, known: Known, which: Indices) -> Peak:
     theta = theta[:, :1] + np.remainder(theta - theta[:, :1] + math.pi, TURN) - math.pi
     bound = value
     for turn in range(ROUNDS + 1):
-        strayed = np.flatnonzero(np.ptp(theta, axis=1) > APART)
+        apart = np.ptp(theta, axis=1)
+        strayed = np.flatnonzero(apart > APART)
         if len(strayed) and turn:
             theta[strayed] = rollers.worst(triangles[strayed].reshape(-1, 3)).theta.reshape(-1, 3)
             theta[strayed, 1:] += TURN * np.round((theta[strayed, :1] - theta[strayed, 1:]) / TURN)
+        # where angles that seem to agree have left the bound open, one of them is not the worst
+        alike = np.flatnonzero(apart < rollers.finest)
+        if len(alike) and turn:
+            theta[alike] = _settled(rollers, triangles[alike].reshape(-1, 3), theta[alike].ravel()).reshape(-1, 3)
         off = _farthest(rollers, triangles, theta)
         if turn:
             # a flank that bulges is bare within its triangles, though no corner of the file is
@@ -183,10 +188,14 @@ def bare(rollers: Rollers, body: Body, known: Known, which: Indices) -> Peak:
 
 
 def _barest(rollers: Rollers, triangles: Array) -> tuple[float, float]:
-    """Distance of that corner of triangles (t, 3, 3) which is farthest from rollers, mm, and its worst angle, rad."""
+    """Distance of that corner of triangles (t, 3, 3) which is farthest from rollers, mm, and its worst angle, rad.
+
+    One that is out of reach of all rollers is told to be as far as they reach.
+    """
     points = triangles.reshape(-1, 3)
     found = rollers.worst(points)
-    distance = rollers.distance(found.excess, rollers.own(rollers.at(points, found.theta)))
+    excess = np.minimum(found.excess, rollers.reached)
+    distance = rollers.distance(excess, rollers.own(rollers.at(points, found.theta)))
     k = int(distance.argmax())
     return float(distance[k]), float(found.theta[k])
 
@@ -206,7 +215,7 @@ def _halved(rollers: Rollers, triangles: Array, theta: Array) -> tuple[Array, Ar
 def _settled(rollers: Rollers, points: Array, theta: Array) -> Array:
     """Angles (n,) nearer to the worst ones of points (n, 3): where a parabola about theta (n,) is least.
 
-    Along a long side the worst angle is not even: the mean of both ends may be off by more than the tolerance allows.
+    The worst angle is not even along a long side: at the mean of its ends a sound place may seem to be bare.
     """
     step = BESIDE * rollers.finest
     theta = rollers.finest * np.rint(theta / rollers.finest)
