@@ -32,6 +32,9 @@ FAR, FEW = 10.0, 2  # times the tolerance: a surface found so far off is divided
 MOST_PARTS = 2_000_000  # triangles at a time while dividing
 LEAST_PARTS = 4  # of an edge that may span a track
 APART = 0.1  # rad: worst angles of a triangle's corners that are farther apart are not of one place of a flank
+ASKED = 16  # triangles in each round, those of the greatest bounds, whose corners are measured
+BESIDE = 4  # of the finest steps: places of a parabola beside an angle
+MOST_MOVED = 2.0  # of these, by which the parabola may move the angle
 
 
 class Peak(NamedTuple):
@@ -156,34 +159,71 @@ def bare(rollers: Rollers, body: Body, known: Known, which: Indices) -> Peak:
     value, at = float(known.distance[place]), float(known.worst.theta[place])
     triangles, theta = body.points[corners], known.worst.theta[corners]
     theta = theta[:, :1] + np.remainder(theta - theta[:, :1] + math.pi, TURN) - math.pi
-    bound, goal = value, max(value + OPEN * max(value, rollers.tolerance), PLAIN * rollers.tolerance)
-    rounds = FEW if value > FAR * rollers.tolerance else ROUNDS
-    for turn in range(rounds + 1):
-        strayed = np.flatnonzero(np.ptp(theta, axis=1) > APART)
+    bound = value
+    for turn in range(ROUNDS + 1):
+        apart = np.ptp(theta, axis=1)
+        strayed = np.flatnonzero(apart > APART)
         if len(strayed) and turn:
             theta[strayed] = rollers.worst(triangles[strayed].reshape(-1, 3)).theta.reshape(-1, 3)
             theta[strayed, 1:] += TURN * np.round((theta[strayed, :1] - theta[strayed, 1:]) / TURN)
+        # where angles that seem to agree have left the bound open, one of them is not the worst
+        alike = np.flatnonzero(apart < rollers.finest)
+        if len(alike) and turn:
+            theta[alike] = _settled(rollers, triangles[alike].reshape(-1, 3), theta[alike].ravel()).reshape(-1, 3)
         off = _farthest(rollers, triangles, theta)
-        left = off > goal
+        if turn:
+            # a flank that bulges is bare within its triangles, though no corner of the file is
+            found, angle = _barest(rollers, triangles[np.argsort(off)[-ASKED:]])
+            value, at = (found, angle) if found > value else (value, at)
+        left = off > max(value + OPEN * max(value, rollers.tolerance), PLAIN * rollers.tolerance)
         bound = max(bound, float(off[~left].max(initial=-math.inf)))
         if not left.any():
             break
-        if turn == rounds or 2 * np.count_nonzero(left) > MOST_PARTS:
+        rounds = FEW if value > FAR * rollers.tolerance else ROUNDS
+        if turn >= rounds or 2 * np.count_nonzero(left) > MOST_PARTS:
             bound = max(bound, float(off.max()))
             break
-        triangles, theta = _halved(triangles[left], theta[left])
+        triangles, theta = _halved(rollers, triangles[left], theta[left])
     return Peak(value, max(0.0, bound - value), at)
 
 
-def _halved(triangles: Array, theta: Array) -> tuple[Array, Array]:
+def _barest(rollers: Rollers, triangles: Array) -> tuple[float, float]:
+    """Distance of that corner of triangles (t, 3, 3) which is farthest from rollers, mm, and its worst angle, rad.
+
+    One that is out of reach of all rollers is told to be as far as they reach.
+    """
+    points = triangles.reshape(-1, 3)
+    found = rollers.worst(points)
+    excess = np.minimum(found.excess, rollers.reached)
+    distance = rollers.distance(excess, rollers.own(rollers.at(points, found.theta)))
+    k = int(distance.argmax())
+    return float(distance[k]), float(found.theta[k])
+
+
+def _halved(rollers: Rollers, triangles: Array, theta: Array) -> tuple[Array, Array]:
     """Triangles (t, 3, 3) and angles at their corners (t, 3), in two by the side over which the angle goes most."""
     first = np.abs(theta - np.roll(theta, -1, axis=1)).argmax(axis=1)
     rows = np.arange(len(theta))
     a, b, c = ((triangles[rows, (first + k) % 3], theta[rows, (first + k) % 3]) for k in range(3))
-    middle = tuple(0.5 * (one + other) for one, other in zip(a, b, strict=True))
+    place = 0.5 * (a[0] + b[0])
+    middle = place, _settled(rollers, place, 0.5 * (a[1] + b[1]))
     parts = [(a, middle, c), (middle, b, c)]
     places, angles = (np.concatenate([np.stack([at[k] for at in part], axis=1) for part in parts]) for k in range(2))
     return places, angles
+
+
+def _settled(rollers: Rollers, points: Array, theta: Array) -> Array:
+    """Angles (n,) nearer to the worst ones of points (n, 3): where a parabola about theta (n,) is least.
+
+    The worst angle is not even along a long side: at the mean of its ends a sound place may seem to be bare.
+    """
+    step = BESIDE * rollers.finest
+    theta = rollers.finest * np.rint(theta / rollers.finest)
+    before, at, after = (rollers.near(points, theta + by)[0] for by in (-step, 0.0, step))
+    curve = before - 2.0 * at + after
+    with np.errstate(divide="ignore", invalid="ignore"):
+        moved = np.where(curve > 0.0, 0.5 * (before - after) / curve, 0.0)
+    return np.asarray(theta + step * np.clip(moved, -MOST_MOVED, MOST_MOVED))
 
 
 def _farthest(rollers: Rollers, triangles: Array, theta: Array) -> Array:

@@ -106,8 +106,13 @@ class Faces:
         return np.asarray(self.kind == self.kinds.index(name))
 
 
-def plain_offs(body: Body, intent: IndexIntent, tolerance: float) -> dict[str, Array]:
-    """Distances (t,), mm, of triangles from each plain face, their inside included where it may be within tolerance."""
+def plain_offs(body: Body, intent: IndexIntent, limits: tuple[float, float]) -> dict[str, Array]:
+    """Distances (t,), mm, of triangles from each plain face, their inside included where it may be within tolerance.
+
+    `limits` are the tolerance and that with the rounding of the file. Distances from layers are bounds, and triangles
+    are divided until these are within the tolerance itself, if that can be.
+    """
+    tolerance = limits[1]
     low, high = intent.ends
     z = body.points[:, 2]
     corners = {BOTTOM: np.abs(z - low), TOP: np.abs(z - high)}
@@ -117,7 +122,7 @@ def plain_offs(body: Body, intent: IndexIntent, tolerance: float) -> dict[str, A
     for name, depth in ((BLANK, 0.0), (FLOOR, intent.form.depth)):
         off = np.abs(body.depth - depth)[body.corners].max(axis=1)
         near = np.flatnonzero(off <= tolerance)
-        off[near] = _layer_off(body.points[body.corners[near]], intent, depth, tolerance)
+        off[near] = _layer_off(body.points[body.corners[near]], intent, depth, limits)
         offs[name] = off
     if intent.bore is not None:
         near = np.flatnonzero(offs[BORE] <= tolerance)
@@ -141,9 +146,9 @@ def sorted_faces(body: Body, intent: IndexIntent, offs: dict[str, Array], away: 
     return Faces(kinds, kind, {name: math.nan if one == -math.inf else one for name, one in off.items()}, least)
 
 
-def _layer_off(triangles: Array, intent: IndexIntent, depth: float, tolerance: float) -> Array:
+def _layer_off(triangles: Array, intent: IndexIntent, depth: float, limits: tuple[float, float]) -> Array:
     """Distance (t,), mm, of triangles (t, 3, 3) from a layer: of their inside too, divided while that is open."""
-    form = intent.form
+    form, (goal, tolerance) = intent.form, limits
     worst, own = np.zeros(len(triangles)), np.arange(len(triangles))
     for halving in range(HALVINGS + 1):
         off = form.depth_of(np.hypot(triangles[..., 0], triangles[..., 1]), triangles[..., 2]) - depth
@@ -152,7 +157,8 @@ def _layer_off(triangles: Array, intent: IndexIntent, depth: float, tolerance: f
         known = np.abs(off).max(axis=1)
         bound = np.maximum(off.max(axis=1) + more, less - off.min(axis=1))
         bound = np.maximum(bound, known)
-        settled = (bound <= tolerance) | (known > tolerance) | (halving == HALVINGS)
+        # a corner that rounding has put beyond the tolerance stays there however often its triangle is divided
+        settled = (bound <= np.where(known > goal, tolerance, goal)) | (known > tolerance) | (halving == HALVINGS)
         np.maximum.at(worst, own[settled], bound[settled])
         own, triangles = np.repeat(own[~settled], 4), quartered(triangles[~settled])
         if not len(own):

@@ -151,9 +151,10 @@ class _Judged:
         body = Body.of(read.mesh, intent)
         slack = read.rounding * math.sqrt(3.0) + ROUNDING * float(np.abs(body.points).max())
         tolerance = limits.tolerance + slack
-        rest = np.flatnonzero(_least(plain_offs(body, intent, tolerance)) > tolerance)
+        both = limits.tolerance, tolerance
+        rest = np.flatnonzero(_least(plain_offs(body, intent, both)) > tolerance)
         body = body.divided(intent, rest, rollers.longest)
-        offs = plain_offs(body, intent, tolerance)
+        offs = plain_offs(body, intent, both)
         rest = np.flatnonzero(_least(offs) > tolerance)
         asked = np.zeros(len(body.points), dtype=np.bool_)
         asked[body.corners[rest]] = True

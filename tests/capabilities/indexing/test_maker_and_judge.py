@@ -2,7 +2,8 @@
 
 The maker has closed forms of its flanks, the judge has positions of rollers alone: they share no curve.
 
-Holds: camgeo.capabilities.indexing.verdicts, camgeo.capabilities.indexing.solid, kin.indexing.holding.
+Holds: camgeo.capabilities.indexing.verdicts, camgeo.capabilities.indexing.solid, kin.indexing.holding,
+kin.indexing.contour, kin.indexing.faces.
 """
 
 from __future__ import annotations
@@ -17,6 +18,8 @@ from typing import TYPE_CHECKING
 import numpy as np
 import pytest
 from capabilities.indexing.made_indexers import BARREL, GLOBOID, changed, random_indexer, shared_design
+from capabilities.indexing.rollers import Indexed, barrel_away, globoid_away, nearest
+from support.heavy import manifold3d
 
 from camgeo.capabilities.indexing import solid
 from camgeo.capabilities.indexing.checks_of import design_checks
@@ -25,8 +28,11 @@ from camgeo.capabilities.indexing.sheet import sheet_of
 from camgeo.capabilities.indexing.verdicts import intended
 from camgeo.cli.main import main
 from camgeo.output.extension import numbers_of
+from kin.indexing.contour import Known, bare
+from kin.indexing.faces import Body
 from kin.indexing.intent import Limits
 from kin.indexing.judge import judge_mesh
+from kin.indexing.rollers import Rollers
 from kin.numeric.records import replace
 from kin.read.mesh.checked import Triangles, checked
 
@@ -68,6 +74,75 @@ def test_what_is_made_is_accepted(text: str, tolerance: float) -> None:
     """Down to a thousandth of a millimetre, where the angles that are asked lie on the seams of triangles."""
     verdict = judged(made(text, tolerance), text, tolerance)
     assert verdict.ok, [check for check in verdict.checks if not check.ok]
+
+
+LAWS = {
+    BARREL: Indexed([("rise", 60.0, 150.0, "cycloidal"), ("dwell", 0.0, 210.0, "")], -30.0),
+    GLOBOID: Indexed([("rise", 45.0, 120.0, "cycloidal"), ("dwell", 0.0, 240.0, "")], -22.5),
+}
+AWAY = {
+    BARREL: barrel_away(30.0 * (1.0 + math.cos(math.radians(30.0))), 60.0, 1, 40.0),
+    GLOBOID: globoid_away(90.0, 30.0),
+}
+LONGEST = 120  # triangles whose inside is held against all positions
+
+
+@functools.cache
+def simplified(text: str) -> Solid:
+    """The same cam with fewer triangles, as programs for meshes make them: its faces move by 0.001 mm at most."""
+    points, corners = made(text)
+    mesh = manifold3d.Manifold(manifold3d.Mesh64(points, corners.astype(np.uint64))).simplify(0.001).to_mesh64()
+    return np.array(mesh.vert_properties)[:, :3], np.array(mesh.tri_verts).astype(np.int64)
+
+
+@pytest.mark.costly("a verdict on a fine solid")
+@FORMS
+def test_a_sound_cam_is_accepted_with_fewer_triangles(text: str) -> None:
+    """In a dwell few slender triangles are left of a flank: along them the worst angle is uneven."""
+    verdict = judged(simplified(text), text)
+    assert len(simplified(text)[1]) < len(made(text)[1])
+    assert verdict.ok, [check for check in verdict.checks if not check.ok]
+
+
+@pytest.mark.costly("rollers at all angles against the inside of triangles")
+@FORMS
+@pytest.mark.parametrize("body", [made, simplified])
+def test_how_bare_triangles_are_agrees_with_positions(text: str, body: Callable[[str], Solid]) -> None:
+    """A flank that bulges is barest within triangles; what the proof leaves open there is a fifth of the tolerance."""
+    points, corners = body(text)
+    intent, roller = intended(shared_design(text)), 9.0 if text == BARREL else 8.0
+    read = checked(Triangles(points[corners], "binary"), Path("cam.stl"))
+    own, rollers = Body.of(read.mesh, intent), Rollers(intent, TOLERANCE)
+    depth, z = own.depth[own.corners], own.points[own.corners][..., 2]
+    flanks = np.flatnonzero(
+        (np.ptp(depth, axis=1) > 0.5) & (depth.max(axis=1) < 14.0) & (np.abs(z).min(axis=1) < 0.5 * intent.length - 1.0)
+    )
+    sides = np.roll(own.points[own.corners[flanks]], -1, axis=1) - own.points[own.corners[flanks]]
+    which = flanks[np.argsort(np.linalg.norm(sides, axis=2).max(axis=1))[-LONGEST:]]
+    peak = bare(rollers, own, Known.of(rollers, own, np.unique(own.corners[which])), which)
+    shares = np.array([(i, j, 8 - i - j) for i in range(9) for j in range(9 - i)]) / 8.0
+    places = np.einsum("wc,tcx->twx", shares, own.points[own.corners[which]]).reshape(-1, 3)
+    places[:, 2] += intent.height
+    found = float(nearest(AWAY[text], LAWS[text], places, 2, 25).max()) - roller
+    assert found <= peak.value + peak.remainder
+    assert peak.value <= found + 0.1 * TOLERANCE
+    assert peak.value + peak.remainder <= max(found + 0.3 * TOLERANCE, 0.5 * TOLERANCE)
+
+
+@pytest.mark.costly("a verdict on a fine solid")
+@FORMS
+def test_layers_are_told_within_the_tolerance(text: str) -> None:
+    """A polygon about a cylinder fills the tolerance: neither the proof nor single precision shows in what is told."""
+    points, corners = made(text)
+    checks = {check.name: check for check in judged((points, corners), text).checks}
+    told = {name: checks[name].value or math.inf for name in ("blank", "floor", "ends", "bore")}
+    assert max(told.values()) <= TOLERANCE
+    # places all over the triangles of the blank, by the circle that turns about the cam's axis
+    shares = np.array([(i, j, 8 - i - j) for i in range(9) for j in range(9 - i)]) / 8.0
+    places = np.einsum("wc,tcx->twx", shares, points[corners])
+    r = np.hypot(places[..., 0], places[..., 1])
+    off = np.abs(r - 50.0 if text == BARREL else np.hypot(90.0 - r, places[..., 2] - 30.0) - 49.0).max(axis=1)
+    assert told["blank"] >= float(off[off < 1.1 * TOLERANCE].max())
 
 
 def turned(body: Solid) -> Solid:
