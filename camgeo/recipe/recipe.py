@@ -8,6 +8,7 @@ file of its own beside this one.
 from __future__ import annotations
 
 import collections.abc
+import re
 from contextlib import contextmanager
 from pathlib import Path
 from typing import TYPE_CHECKING, ClassVar, Literal, NamedTuple, TypeVar, overload
@@ -51,7 +52,8 @@ if TYPE_CHECKING:
 
 T = TypeVar("T")
 ANGLES = 3600  # of a turn at which files are judged
-OF_A_KIND = (f"{CAM}.", "part.", "limits.")  # what these keys are depends on the kind of cam
+OF_A_KIND = re.compile(rf"({CAM}\.(?!kind$)|part\.|limits\.).*|export\.files\[\d+\]")
+"""Paths of what depends on the kind of cam: its keys, those of the part and of limits, and what a file needs."""
 
 
 @dataclass(frozen=True)
@@ -419,9 +421,7 @@ def _read(source: Source, capabilities: tuple[str, ...]) -> tuple[Reader, Values
     cam = entries(source.root).get(CAM) if isinstance(source.root, Mapping) else None
     if isinstance(cam, Mapping) and "kind" in entries(cam) and not kind_of(cam, CAMS):
         # which keys a kind takes is not known of one that there is not
-        reader.errors = [
-            error for error in reader.errors if error.path == f"{CAM}.kind" or not error.path.startswith(OF_A_KIND)
-        ]
+        reader.errors = [error for error in reader.errors if not OF_A_KIND.fullmatch(error.path)]
     return reader, values
 
 

@@ -234,6 +234,7 @@ def test_a_step_between_two_angles_of_a_long_cam() -> None:
         design_of(text)
 
 
+@pytest.mark.costly("cams before and after the remedy")
 def test_a_roller_that_hardly_reaches_in_is_told_where_to_bear() -> None:
     """What the check names holds it."""
 
