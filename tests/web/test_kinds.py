@@ -267,6 +267,7 @@ def test_a_turret_is_shown_over_a_turn(name: str) -> None:
 
 
 # needs: indexing
+@pytest.mark.costly("the design of two turrets")
 def test_a_barrel_comes_on_paper_unrolled_and_a_globoid_says_why_not() -> None:
     page = Path(live.paper("index-barrel", TEXTS["index-barrel"])["files"][0]["path"]).read_bytes().decode("latin-1")
     assert "unrolled at a radius of 50 mm" in page
