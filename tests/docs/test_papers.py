@@ -24,6 +24,7 @@ SCRIPTS = {
     "make_camshafts": "camshafts.md",  # needs: camshaft
     "make_constant_breadth": "constant-breadth.md",
     "make_cylindrical_picture": "cylindrical.md",  # needs: cylindrical
+    "make_indexing_picture": "indexing.md",  # needs: indexing
     "make_double_roller": "double-roller.md",
     "make_laws": "double-roller.md",
     "make_yoke_pictures": "linkages.md",

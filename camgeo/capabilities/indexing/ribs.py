@@ -83,10 +83,10 @@ def line_in(flank: Flank, w: float) -> tuple[Array, Array]:
     return contact.phi, z
 
 
-def layers(design: IndexDesign) -> list[Layer]:
-    """Layers from the floor to the blank."""
+def layers(design: IndexDesign, deep: int = DEEP) -> list[Layer]:
+    """Layers from the floor to the blank, which is the last of so many beside the floor."""
     form = design.recipe.form
-    return [layer(design, w) for w in np.linspace(form.floor, form.blank, DEEP + 1).tolist()]
+    return [layer(design, w) for w in np.linspace(form.floor, form.blank, deep + 1).tolist()]
 
 
 # --- as they are seen -------------------------------------------------------------------------------------------------

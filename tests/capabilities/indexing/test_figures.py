@@ -183,6 +183,7 @@ def test_loads_follow_from_virtual_work() -> None:
     assert heavy["contact-pressure"][0] == pytest.approx(2.0 * light["contact-pressure"][0], rel=1e-6)
 
 
+@pytest.mark.costly("the design of a cam with play")
 def test_play_is_the_clearance_by_its_lever() -> None:
     """In the dwell two rollers stand 30 degrees beside the middle: cos alpha 60 is their lever."""
     design = design_of(changed(BARREL, ("roller: 9", "roller: 9, clearance: 0.06")))
@@ -230,6 +231,7 @@ def test_checks_and_remarks() -> None:
     assert section["offset"] == pytest.approx(30.0 * (1.0 + math.cos(math.pi / 6)))
 
 
+@pytest.mark.costly("cams with two lengths of rollers")
 def test_rollers_that_reach_out_of_the_blank_bear_within_it() -> None:
     """However far they go on, they bear as those that end at the blank."""
     one, other = (design_of(changed(BARREL, ("roller: 9", f"roller: 9, to: {to}"))) for to in (50, 500))
