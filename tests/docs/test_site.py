@@ -150,7 +150,7 @@ QUERIES = {
     "grinding": {"camshafts"},
     "valve lift": {"valve"},
     "keyway": {"recipe-part"},
-    "indexing": {"axis"},
+    "indexing": {"indexing"},
     "globoid": {"which-cam"},
     "constant breadth": {"constant-breadth"},
     "yoke": {"recipe-yoke"},
