@@ -148,7 +148,7 @@ class _Track(NamedTuple):
         return len(self.lower) // LOOKS
 
     def begun(self, turn: int) -> _Track:
-        """The same from the beginning of another turn on."""
+        """Track whose rows begin with another of its turns, by number."""
         lower, upper = (np.roll(row, -turn * LOOKS) for row in (self.lower, self.upper))
         stands = None if self.stands is None else np.roll(self.stands, -turn * LOOKS, axis=1)
         return _Track(self.kind, lower, upper, stands)
@@ -399,7 +399,10 @@ def _touches(drum: Drum, track: _Track, stated: StatedRoller, radii: tuple[float
 
 
 def _alike(found: Sequence[Winding], middle: Array, radius: float) -> Winding:
-    """That of the grooves at a radius, mm, and of its turns, which is the one with these middles (n,)."""
+    """Groove among those found at a radius, mm, begun at the turn whose middles are those given (n,), mm.
+
+    Raises UnknownError where none is near enough, beside the groove's width.
+    """
     for winding in found:
         for turn in range(len(winding.lower) // LOOKS):
             own = winding.begun(turn, LOOKS)

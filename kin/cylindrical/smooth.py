@@ -117,7 +117,7 @@ class SeenSmooth(NamedTuple):
 
 
 class Crossed(NamedTuple):
-    """What a surface of several turns is held against: gauges of all flanks, and where its own is to carry.
+    """Gauges of all flanks of a track of several turns, and where the flank that is judged has to carry the roller.
 
     `carries` says for lines at radii (m,), mm, in which of BINS equal parts of each turn some of them have to hold.
     """

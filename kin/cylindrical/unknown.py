@@ -107,7 +107,10 @@ class Drum:
 
     @cached_property
     def crossed_sag(self) -> float:
-        """The same of a groove that crosses itself: at its corners two flanks may bend as little as two facets do."""
+        """How far facets of a groove that crosses itself stand off the surface, mm.
+
+        Fewer bends count than in `sag`: at a crossing's corner two flanks may bend as little as two facets do.
+        """
         return _most(self.bends, MOST_CROSSED)
 
     @cached_property

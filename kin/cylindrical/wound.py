@@ -45,7 +45,7 @@ class Winding:
     stands: Mask
 
     def begun(self, turn: int, lines: int) -> Winding:
-        """The same from the beginning of another turn on; a turn has so many lines."""
+        """Groove whose rows begin with another of its turns, by number, where each turn has `lines` lines."""
         back = -turn * lines
         return Winding(np.roll(self.lower, back), np.roll(self.upper, back), np.roll(self.stands, back, axis=1))
 

@@ -92,7 +92,7 @@ class Border(NamedTuple):
 
 
 class Span(NamedTuple):
-    """What lies between two borders, with the shaft angle linear in s between them."""
+    """Part of a flank between two borders; the shaft angle on a cylinder is linear in s, from 0 to 1, between them."""
 
     first: Border
     last: Border

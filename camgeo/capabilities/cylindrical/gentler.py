@@ -1,4 +1,4 @@
-"""What lowers the pressure angle of an arm or a cone: a larger drum, and a longer motion, each by how much."""
+"""Least drum radius, mm, and least stretch of the motion that keep a limit on the pressure angle of arms and cones."""
 
 from __future__ import annotations
 

@@ -49,7 +49,7 @@ def _shortest(design: IndexDesign) -> float:
 
 
 def _longer(design: IndexDesign) -> str:
-    """What would let rollers bear: a place where they begin and end, where that alone is at fault."""
+    """Remedy for a line of contact that is too short: places `from` and `to` that serve, or more stops."""
     recipe = design.recipe
     inner, outer = recipe.turret.usual(recipe.roller.radius)
     if inner < outer and (inner < recipe.roller.inner or recipe.roller.outer < outer):

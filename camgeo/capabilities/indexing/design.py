@@ -41,16 +41,16 @@ class IndexDesign:
         return {flank.name: flank for flank in flanks}
 
     def resized(self, radius: float) -> IndexDesign:
-        """The same cam for rollers of another radius, mm."""
+        """Design with rollers of another radius, mm."""
         recipe = self.recipe
         return replace(self, recipe=replace(recipe, roller=replace(recipe.roller, radius=radius)))
 
     def cleared(self, clearance: float) -> IndexDesign:
-        """The same cam with another clearance, mm, below 0 a preload."""
+        """Design with another clearance of the groove, mm; a clearance below 0 is a preload."""
         return replace(self, recipe=replace(self.recipe, clearance=clearance))
 
     def shortened(self, length: float) -> IndexDesign:
-        """The same cam of another length, mm, with the turret's axis in its middle."""
+        """Design of another length, mm, with the turret's axis half way up."""
         recipe, turret = self.recipe, self.recipe.turret
         form = replace(turret.form, length=length, height=0.5 * length)
         return replace(self, recipe=replace(recipe, turret=replace(turret, form=form)))
@@ -67,7 +67,7 @@ class IndexDesign:
         return max(roller.inner, low), min(roller.outer, high)
 
     def rolled(self, inner: float, outer: float) -> IndexDesign:
-        """The same cam for rollers that bear from `inner` to `outer`, mm."""
+        """Design with rollers that bear from `inner` to `outer` along their axes, mm."""
         recipe = self.recipe
         return replace(self, recipe=replace(recipe, roller=replace(recipe.roller, inner=inner, outer=outer)))
 

@@ -76,5 +76,5 @@ class IndexLaw:
         return np.append(0.0, inner)
 
     def breaks_over(self, first: int, last: int) -> Array:
-        """Those angles (k,) in whole turns of the shaft, from the first to the last of them, rad, rising."""
+        """Shaft angles (k,) of the breaks, rad, rising, over whole turns from number `first` to number `last`."""
         return np.asarray((self.breaks + TURN * np.arange(first, last + 1)[:, None]).ravel())
