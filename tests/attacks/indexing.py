@@ -116,9 +116,7 @@ class _Led(Rollers):
     """Rollers led by the law of a recipe."""
 
     def __init__(self, recipe, law) -> None:
-        turret = recipe.turret
-        sizes = {key: float(value) for key, value in vars(turret).items()}
-        super().__init__(turret.word, sizes, recipe.stops, 0.0, recipe.start)
+        super().__init__(recipe.turret.word, vars(recipe.form), recipe.stops, 0.0, recipe.start)
         self.law = law
 
     def psi(self, theta: np.ndarray) -> np.ndarray:

@@ -38,7 +38,17 @@ sweep: {vary: {"cam.shaft[0]": {from: 1, to: 2, steps: 2}}, limits: {size: {at_m
 """  # of which no design is kept, so that nothing is drawn
 SHAFT = Path(__file__).parents[2] / "recipes" / "camshafts" / "packaging.yaml"  # needs: camshaft
 OWN = frozenset(
-    {"Check.of", "Edges.of", "Figure.of", "Edges.count", "Edges.index", "Report.get", "Report.items", "Report.keys"}
+    {
+        "Check.of",
+        "Edges.of",
+        "Figure.of",
+        "Figures.placed",
+        "Edges.count",
+        "Edges.index",
+        "Report.get",
+        "Report.items",
+        "Report.keys",
+    }
     | {f"{name}.{method}" for name in ("Figures", "Search") for method in ("get", "items", "keys", "values")}
     | {"Report.values"}
 )  # made by the library itself, or Python's own
@@ -78,6 +88,7 @@ def surface(folder: Path) -> Functions:
     recipe = camgeo.load(TEXT)
     design, report = camgeo.design(recipe), camgeo.export(recipe, folder)
     drawing = folder / "small" / "small.dxf"
+    followed = camgeo.follow(drawing, flat=True)  # needs: follow
     return {
         "load": (camgeo.load, {"source": TEXT}),
         "design": (camgeo.design, {"recipe": recipe}),
@@ -93,7 +104,9 @@ def surface(folder: Path) -> Functions:
             {"file": drawing, "roller": 3.0, "flat": False, "arm": None, "at": (0.0, 0.0), "steps": 36},
         ),
         # needs: follow
-        "Followed.recipe": (camgeo.follow(drawing, flat=True).recipe, {"table": "lift.csv"}),
+        "Followed.recipe": (followed.recipe, {"table": "lift.csv"}),
+        # needs: follow
+        "Followed.told_recipe": (followed.told_recipe, {"table": "lift.csv"}),
         "Law": (camgeo.laws()["cycloidal"].__call__, {"u": 0.5, "derivative": 1}),
         "Recipe.replace": (recipe.replace, {"path": "name", "value": "other"}),
         "Recipe.save": (recipe.save, {"path": "saved.yaml"}),

@@ -279,18 +279,6 @@ class Followed:
         turned = math.degrees(self._asked.turn) + (found.begin if self.rotation == "ccw" else -found.begin)
         return found._replace(why=f"{found.why}; give --turn={math.remainder(turned, 360.0):.6g} to begin elsewhere")
 
-    def law_lines(self, table: str) -> list[str]:
-        """Lines of text on the motion of a recipe by laws: what they are, or why it has the file `table` of lifts."""
-        laws, name = self.laws, escaped(table)
-        if laws.rows is None:
-            return [f"  the recipe has the motion as the table {name}: {laws.why}"]
-        unit = "mm" if self.unit == "mm" else "deg"
-        within = f"within {laws.off:.2g} {unit} of the motion"
-        return [
-            *(f"  {line}" for line in laws.lines),
-            f"  the recipe has these laws, {within}, and names the table {name} beside them",
-        ]
-
     @property
     def _reading(self) -> float:
         """The reading in the motion's unit: mm, or on an arm the angle that moves the touch by it, rad."""
@@ -419,8 +407,17 @@ class Followed:
         return summary(self)
 
     def told_recipe(self, table: str) -> tuple[str, list[str]]:
-        """Text of the recipe with the laws of this motion where they fit, and lines of text on what it has."""
-        return self.recipe(table, laws=True), self.law_lines(table)
+        """Text of the recipe with the laws of this motion where they fit, and lines of text on what it has.
+
+        The lines tell the laws, or why the recipe has the file `table` of lifts. Raises as `Followed.recipe` does.
+        """
+        text, laws, name = self.recipe(table, laws=True), self.laws, escaped(table)
+        if laws.rows is None:
+            return text, [f"  the recipe has the motion as the table {name}: {laws.why}"]
+        unit = "mm" if self.unit == "mm" else "deg"
+        within = f"within {laws.off:.2g} {unit} of the motion"
+        last = f"  the recipe has these laws, {within}, and names the table {name} beside them"
+        return text, [*(f"  {line}" for line in laws.lines), last]
 
     def page(self) -> str:
         """HTML of the page of this motion's recipe, with the verdict on the file.

@@ -78,7 +78,8 @@ def test_laws_that_were_drawn_are_found(tmp_path: Path, offset: float) -> None:
     recipe = camgeo.load(tmp_path / "found.yaml")  # without its table, which a comment names
     angles = np.linspace(0.0, 2.0 * np.pi, 50)
     np.testing.assert_allclose(camgeo.design(recipe).motion(angles), lift(np.degrees(angles)), atol=1e-9)
-    *_, first, second, last = found.law_lines("found.csv")
+    text, (*_, first, second, last) = found.told_recipe("found.csv")
+    assert text == found.recipe("found.csv", laws=True)
     assert first.startswith("  stroke 1: 12 +- ")
     assert "cycloidal leaves" in first
     assert "polynomial-345 leaves" in second
