@@ -38,19 +38,10 @@ sweep: {vary: {"cam.shaft[0]": {from: 1, to: 2, steps: 2}}, limits: {size: {at_m
 """  # of which no design is kept, so that nothing is drawn
 SHAFT = Path(__file__).parents[2] / "recipes" / "camshafts" / "packaging.yaml"  # needs: camshaft
 OWN = frozenset(
-    {
-        "Check.of",
-        "Edges.of",
-        "Figure.of",
-        "Figures.placed",
-        "Edges.count",
-        "Edges.index",
-        "Report.get",
-        "Report.items",
-        "Report.keys",
-    }
+    {f"{name}.of" for name in ("Check", "Edges", "Figure")}
     | {f"{name}.{method}" for name in ("Figures", "Search") for method in ("get", "items", "keys", "values")}
-    | {"Report.values"}
+    | {f"Report.{method}" for method in ("get", "items", "keys", "values")}
+    | {"Edges.count", "Edges.index", "Figures.placed"}
 )  # made by the library itself, or Python's own
 
 
