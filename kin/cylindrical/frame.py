@@ -1,4 +1,4 @@
-"""The exact flank of a drum in closed form: where a roller touches it, how it bends, where it is undercut.
+"""The exact flank of a drum in closed form: the points where a roller touches it.
 
 A point at rho on the roller's axis, which is at (y, z), moves seen from the cam by V = -y e_r + (rho + y') e_t + z' k
 per radian. There the roller has the radius R, which grows by g = tan delta along it. A normal of contact is square to V
@@ -7,14 +7,7 @@ n = -sin a e_t + cos a k,
 
     A sin a - z' cos a = side y g,    flank = rho e_r + y e_t + z k + side R n,
 
-side -1 below the roller and 1 above it; on a cylinder, or with y = 0, sin a = z'/w and cos a = A/w. By its derivatives
-
-    a' = (-sin a y'' + cos a z'' + side y' g)/h    by the shaft angle,    h = cos a A + sin a z'
-    a. = -sin a (1 + g^2)/h                        along the roller
-
-follow both tangents of the flank. Their product along its normal is D, above 0 where the flank is regular: for a
-cylinder with y = 0 it is w - side R rho S''/w^2 - R^2 S'^2/w^3, and the curvature of flank against roller across the
-line of contact is w (1 + (R sin a/w)^2)/(R D).
+side -1 below the roller and 1 above it; on a cylinder, or with y = 0, sin a = z'/w and cos a = A/w.
 """
 
 from __future__ import annotations
@@ -53,21 +46,12 @@ class On(NamedTuple):
 
 
 class Contact(NamedTuple):
-    """A roller on a flank: its axis, its radius, mm, sine and cosine of the contact angle, and h, mm, as jets."""
+    """A roller on a flank: its axis, its radius, mm, and sine and cosine of the contact angle, as jets."""
 
     axis: Axis[Jet]
     radius: Jet
     sine: Jet
     cosine: Jet
-    h: Jet
-
-
-class _Tangents(NamedTuple):
-    """D, mm, the square of the tangent by the place along the roller, and how fast the roller leaves a point, mm."""
-
-    product: Jet
-    square: Jet
-    leaving: Jet
 
 
 def rates(follower: DrumFollower, theta: Array, order: int = 0, knot_side: KnotSide = 1) -> Rates:
@@ -85,7 +69,7 @@ def contact(follower: DrumFollower, rows: Rates, rho: Array | float | Jet, on: O
     square = along * along + axis.z1 * axis.z1
     lean = axis.y * (on.side * growth)
     h = sqrt(square - lean * lean)
-    return Contact(axis, radius, (lean * along + axis.z1 * h) / square, (along * h - lean * axis.z1) / square, h)
+    return Contact(axis, radius, (lean * along + axis.z1 * h) / square, (along * h - lean * axis.z1) / square)
 
 
 def pressure_jet(follower: DrumFollower, rows: Rates, rho: float, on: On) -> Jet:
@@ -93,58 +77,6 @@ def pressure_jet(follower: DrumFollower, rows: Rates, rho: float, on: On) -> Jet
     found, still = contact(follower, rows, rho, on), 0.0 * rows.lift
     way = follower.guide(on.beside).jets(rows.lift, still + 1.0, still)
     return atan2(found.sine * way.z1 + found.cosine * way.y1, found.cosine * way.z1 - found.sine * way.y1)
-
-
-def regularity_jet(follower: DrumFollower, rows: Rates, rho: float, on: On) -> Jet:
-    """Regularity D, mm, of a flank at the place rho, mm, along the roller."""
-    return _tangents(follower, rows, rho, on).product
-
-
-def _tangents(follower: DrumFollower, rows: Rates, rho: Array | float, on: On) -> _Tangents:
-    side, growth = on.side, follower.growth
-    (y, _, y1, z1, y2, z2), radius, sine, cosine, h = contact(follower, rows, rho, on)
-    place, more = y - radius * sine * side, 1.0 + growth**2
-    turned = (cosine * z2 - sine * y2) * side + y1 * growth
-    by_angle, by_place = turned * side / h * radius, sine / h * radius * -more
-    # both tangents in (e_r, e_t, k); the cone's normal is that of contact, with -growth along e_r
-    first = (-place, y1 - cosine * by_angle * side + rho, z1 - sine * by_angle * side)
-    last = (-(sine * growth + cosine * by_place) * side, (cosine * growth - sine * by_place) * side)
-    cross = (
-        first[1] * last[1] - first[2] * last[0],
-        first[2] - first[0] * last[1],
-        first[0] * last[0] - first[1],
-    )
-    product = (cross[0] * (side * growth) + cross[1] * sine - cross[2] * cosine) / more**0.5
-    leaving = h * (h - radius * cosine * growth) / radius - turned + sine * place * (side * more)
-    return _Tangents(product, last[0] * last[0] + last[1] * last[1] + 1.0, leaving / more**0.5)
-
-
-def contact_angles(follower: DrumFollower, theta: Array, rho: Array | float, side: Side = -1) -> Array:
-    """Contact angle a (n,), rad, at shaft angles (n,), rad, and places along the roller, mm."""
-    found = contact(follower, rates(follower, theta), rho, On(side))
-    angles: Array = np.arctan2(found.sine.c[0], found.cosine.c[0])
-    return angles
-
-
-def regularity(
-    follower: DrumFollower, theta: Array, rho: Array | float, side: Side = -1, clearance: float = 0.0
-) -> Array:
-    """Regularity D (n,), mm, of a flank at shaft angles, rad, and places along the roller, mm: undercut below 0."""
-    product = _tangents(follower, rates(follower, theta), rho, On(side, clearance)).product
-    values: Array = product.c[0]
-    return values
-
-
-def relative_curvature(
-    follower: DrumFollower, theta: Array, rho: Array | float, side: Side = -1, clearance: float = 0.0
-) -> Array:
-    """Curvature of flank against roller across the line of contact (n,), 1/mm, for the pressure of a line contact.
-
-    A line that moves on by D over the length of its tangent leaves half `leaving` between roller and flank behind.
-    """
-    found = _tangents(follower, rates(follower, theta), rho, On(side, clearance))
-    curvature: Array = (found.leaving * found.square / (found.product * found.product)).c[0]
-    return curvature
 
 
 def flank_points(

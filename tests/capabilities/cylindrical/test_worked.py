@@ -16,6 +16,7 @@ from typing import TYPE_CHECKING
 import mpmath
 import numpy as np
 import pytest
+from capabilities.cylindrical.kin.meshing import contact_angles, relative_curvature
 from capabilities.cylindrical.made_drums import (
     ARM,
     BESIDE,
@@ -39,7 +40,7 @@ from camgeo.capabilities.cylindrical.checks_of import offset_off, wrapped_off
 from camgeo.capabilities.cylindrical.figures import figures_of, rib_thickness
 from camgeo.capabilities.cylindrical.undercut import below
 from camgeo.capabilities.cylindrical.verdicts import intended
-from kin.cylindrical.frame import contact_angles, flank_points, relative_curvature
+from kin.cylindrical.frame import flank_points
 from kin.cylindrical.gauge import gauges_of
 
 if TYPE_CHECKING:

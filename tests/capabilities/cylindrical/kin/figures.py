@@ -10,8 +10,9 @@ import math
 from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
+from capabilities.cylindrical.kin.meshing import regularity_jet
 
-from kin.cylindrical.frame import On, place_jets, pressure_jet, rates, regularity_jet
+from kin.cylindrical.frame import On, place_jets, pressure_jet, rates
 from kin.cylindrical.gauge import gauges_of
 from kin.cylindrical.play import ACROSS, ROUNDS, exact_play, least_across, room_of
 from kin.numeric.angles import TURN

@@ -10,8 +10,9 @@ import numpy as np
 import pytest
 from capabilities.cylindrical.kin.drums import Arm, Drum, Motion, distances, replace
 from capabilities.cylindrical.kin.figures import pressure_angles
+from capabilities.cylindrical.kin.meshing import contact_angles, regularity, relative_curvature
 
-from kin.cylindrical.frame import contact_angles, flank_points, on_cylinder, regularity, relative_curvature
+from kin.cylindrical.frame import flank_points, on_cylinder
 
 SWING = math.radians(30.0)
 PARTS = ((SWING, 120.0, "cycloidal"), (0.0, 60.0, ""), (-SWING, 120.0, "polynomial-345"), (0.0, 60.0, ""))

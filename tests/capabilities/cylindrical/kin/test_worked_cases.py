@@ -20,9 +20,10 @@ from capabilities.cylindrical.kin.figures import (
     slopes,
     undercut,
 )
+from capabilities.cylindrical.kin.meshing import contact_angles, regularity, relative_curvature
 
 from kin.cylindrical.follower import DrumFollower
-from kin.cylindrical.frame import contact_angles, flank_points, on_cylinder, regularity, relative_curvature
+from kin.cylindrical.frame import flank_points, on_cylinder
 from kin.cylindrical.gauge import gauges_of
 from kin.cylindrical.intent import End
 from kin.law.piecewise import Piecewise
