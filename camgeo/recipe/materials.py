@@ -10,7 +10,9 @@ from camgeo.schema.yaml_source import Mapping
 from kin.numeric.records import dataclass
 
 if TYPE_CHECKING:
-    from camgeo.schema.reader import Reader
+    from collections.abc import Sequence
+
+    from camgeo.schema.reader import Reader, Values
     from camgeo.schema.yaml_source import Node
 
 
@@ -75,3 +77,20 @@ _FORM: OwnForm[Reader] = OwnForm(
 def material(name: str, about: str, *, default: str = "") -> Field:
     """Field of a `Material`: one of MATERIALS, or a mapping with its figures."""
     return Field(name, Kind.OWN, about, default=default, choices=tuple(MATERIALS), form=_FORM)
+
+
+def check_materials(
+    drive: Values,
+    reader: Reader,
+    *,
+    loaded: bool,
+    need: str = "load",
+    keys: Sequence[str] = ("material", "roller_material"),
+) -> None:
+    """Note keys of `cam.drive` that stand without the load they need, and a roller's material without the cam's."""
+    for key in keys:
+        if key in drive and not loaded:
+            remedy = "give load beside it, or leave it out"
+            reader.fault_at(f"cam.drive.{key}", f"cannot stand without {need}", None, remedy)
+    if "roller_material" in drive and "material" not in drive:
+        reader.fault_at("cam.drive.roller_material", "cannot stand without material", None, "give material beside it")

@@ -2,24 +2,54 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, TypeVar
+from typing import TYPE_CHECKING, Any, NamedTuple, TypeVar
 
+from camgeo.part import bore
+from camgeo.part.keyway import FEATURE as KEYWAY
+from camgeo.part.part import Part
 from camgeo.recipe.document import Document
+from camgeo.recipe.figure_bounds import build_bounds
 from camgeo.recipe.keys import read_units
-from camgeo.recipe.recipe import name_by_stem, reader_of_kind
+from camgeo.recipe.recipe import Verify, name_by_stem, reader_of_kind
 from camgeo.schema.errors import RecipeErrors
 from camgeo.schema.fields import Kind
 from camgeo.schema.yaml_source import Mapping, entries
+from kin.numeric.records import replace
 
 if TYPE_CHECKING:
+    from collections import abc
     from collections.abc import Callable
     from pathlib import Path
 
+    from camgeo.schema.errors import RecipeError
     from camgeo.schema.fields import FieldTable
     from camgeo.schema.reader import Reader, Values
     from camgeo.schema.yaml_source import Node, Source
 
 RecipeT = TypeVar("RecipeT")
+ANGLES = 1  # of `Verify`, at which a disc is judged: these kinds are judged at all places
+
+
+class NotYet(NamedTuple):
+    """Keys and formats that other kinds of cam have, and one kind, `noun`, does not have yet.
+
+    `keys` are paths, each with the remedy. `instead` names formats to give in place of those in `formats`.
+    """
+
+    noun: str
+    keys: abc.Mapping[str, str]
+    formats: tuple[str, ...]
+    instead: str
+
+    def told(self, error: RecipeError) -> RecipeError:
+        """The fault of such a key or format, which says that it is not made yet; any other fault as it is."""
+        unknown = error.problem == "unknown key" or error.problem.endswith(f" takes no {error.path}")
+        if unknown and error.path in self.keys:
+            return replace(error, problem="not made yet", remedy=f"leave it out: {self.keys[error.path]}")
+        for word in self.formats:
+            if error.problem.endswith(f" takes no {word}"):
+                return replace(error, problem=f"{word} is not made yet of {self.noun}", remedy=f"give {self.instead}")
+        return error
 
 
 def entry_at(root: Node, *keys: str) -> Node | None:
@@ -54,3 +84,28 @@ def finish(
         raise RecipeErrors(reader.errors)
     document = Document(path=path, text=reader.source.text, marks=reader.marks, kinds=reader.kinds)
     return build(values, document, reader)
+
+
+def common_values(values: Values, document: Document, reader: Reader) -> dict[str, Any]:
+    """Arguments of a recipe that every kind has: its names, its unit, how its files are judged, limits and source."""
+    return {
+        "name": values["name"],
+        "about": values.get("about", ""),
+        "units": values.get("units", "mm"),
+        "mm": reader.mm,
+        "verify": Verify(angles=ANGLES, **values.get("verify", {})),
+        "limits": build_bounds(values.get("limits", {})),
+        **vars(document),
+    }
+
+
+def round_part(part: Values) -> Part:
+    """Part of a cam whose blank is a body of revolution: its length, its bore with a keyway, its wall and density."""
+    keyway = KEYWAY.build(part)
+    return Part(
+        thickness=part["length"],
+        wall=part.get("wall"),
+        density=part.get("density"),
+        features=() if keyway is None else (keyway,),
+        **bore.build_bore(part),
+    )

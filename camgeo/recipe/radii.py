@@ -15,10 +15,11 @@ if TYPE_CHECKING:
     from collections.abc import Mapping
 
     from camgeo.schema.fields import Field, Schema
-    from camgeo.schema.reader import Reader
+    from camgeo.schema.reader import Reader, Values
     from camgeo.schema.yaml_source import Node
 
 MOST = 20  # radii of one development
+ROUNDED = 1e-9  # mm by which a radius may be rounded beyond the floor or the blank
 
 
 def radii_form(words: Mapping[str, str]) -> OwnForm[Reader]:
@@ -50,3 +51,13 @@ def radii_form(words: Mapping[str, str]) -> OwnForm[Reader]:
 
     such = f"a list of {either(tuple(words))} and radii, such as [{', '.join(words)}, 38]"
     return OwnForm("a list of radii", such, read, schema)
+
+
+def check_radii(values: Values, low: float, high: float, reader: Reader) -> None:
+    """Note radii of developments that lie on no flank: below `low` or above `high`, mm."""
+    for file in values.get("export", {}).get("files", []):
+        for i, radius in enumerate(file.get("at", ())):
+            if not isinstance(radius, str) and not low - ROUNDED <= radius <= high + ROUNDED:
+                remedy = f"give one from {reader.shown(low)} to {reader.shown(high)}"
+                where = f"{file['path']}.{file['kind']}.at[{i}]"
+                reader.fault_at(where, "no flank there", reader.shown(radius), remedy)

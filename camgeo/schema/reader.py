@@ -114,6 +114,10 @@ class Reader:
             return math.pi / 180
         return {**dict.fromkeys(_LENGTHS, self.mm), Kind.AREA: self.mm**2}.get(kind, 1.0)
 
+    def shown(self, length: float, digits: int = 9) -> str:
+        """Text of a length, mm, in the recipe's unit, with at most `digits` significant digits: `12.5 mm`."""
+        return f"{length / self.mm:.{digits}g} {self.units}"
+
     # --- tables ------------------------------------------------------------------------------------------------------
 
     def survey(self, node: Node, path: str) -> None:

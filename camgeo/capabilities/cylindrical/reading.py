@@ -11,17 +11,14 @@ from camgeo.capabilities.cylindrical.keys import APEX, FILES, FLOOR_GAP, NEEDED,
 from camgeo.capabilities.cylindrical.tracks import End, Groove, Rib
 from camgeo.common.rounding import downward
 from camgeo.motions.motion import check_filled
-from camgeo.part import bore
-from camgeo.part.keyway import FEATURE as KEYWAY
 from camgeo.part.keyway import check_round
-from camgeo.part.part import Part
 from camgeo.recipe.export import build_export, check_files
-from camgeo.recipe.figure_bounds import build_bounds, check_bounds
-from camgeo.recipe.own_kind import begin, entry_at, finish
-from camgeo.recipe.recipe import Verify
+from camgeo.recipe.figure_bounds import check_bounds
+from camgeo.recipe.materials import check_materials
+from camgeo.recipe.own_kind import NotYet, begin, common_values, entry_at, finish, round_part
+from camgeo.recipe.radii import check_radii
 from camgeo.schema.fields import either
 from kin.numeric.angles import TURN
-from kin.numeric.records import replace
 
 if TYPE_CHECKING:
     from pathlib import Path
@@ -29,17 +26,18 @@ if TYPE_CHECKING:
     from camgeo.capabilities.cylindrical.guide import Guide
     from camgeo.capabilities.cylindrical.tracks import Track
     from camgeo.recipe.document import Document
-    from camgeo.schema.errors import RecipeError
     from camgeo.schema.reader import Reader, Values
     from camgeo.schema.yaml_source import Source
 
-ANGLES = 1  # what a disc would be judged at: a drum is judged at all angles
-NOT_YET = {
-    "cam.sizing": "give the radius of the blank",
-    "manufacture": "a program has its cutter and feeds beside its axes, {gcode: {axes: [X, A], cutter: 20}}",
-}
-"""Keys of what is not made yet, each with what is."""
-FORMATS_NOT_YET = ("svg",)
+NOT_YET = NotYet(
+    "a cylindrical cam",
+    {
+        "cam.sizing": "give the radius of the blank",
+        "manufacture": "a program has its cutter and feeds beside its axes, {gcode: {axes: [X, A], cutter: 20}}",
+    },
+    ("svg",),
+    "stl, 3mf, ply or step",
+)
 EXAMPLE = "axes: [X, A], cutter: 20, feed: 300, plunge: 60, spindle: 2500, safe_height: 5"
 REFUSE = "undercut: refuse, as a cut ends in a sharp edge"
 LEAST_TOLD = {"feed": 1e-3, "plunge": 1e-3, "safe_height": 1e-3, "allowance": 1e-4, "depth_of_cut": 1e-4}
@@ -54,26 +52,13 @@ def reader_of(source: Source) -> tuple[Reader, Values]:
     """Reader that has read the text of a cylindrical cam, but for faults between its keys; and its values."""
     swings = entry_at(source.root, "cam", "follower", "arm") is not None
     reader, values = begin(source, "cylindrical", RECIPE, swings=swings)
-    reader.errors = [_not_yet(error) for error in reader.errors]
+    reader.errors = [NOT_YET.told(error) for error in reader.errors]
     return reader, values
 
 
 def read_cylindrical(source: Source, path: Path) -> DrumRecipe:
     """Read the recipe of a cylindrical cam; raises RecipeErrors with all its faults."""
     return finish(*reader_of(source), path, _check, _built)
-
-
-def _not_yet(error: RecipeError) -> RecipeError:
-    """The fault of a key or a format that is not made yet, said so; any other fault as it is."""
-    unknown = error.problem == "unknown key" or error.problem.endswith(f" takes no {error.path}")
-    if unknown and error.path in NOT_YET:
-        return replace(error, problem="not made yet", remedy=f"leave it out: {NOT_YET[error.path]}")
-    for word in FORMATS_NOT_YET:
-        if error.problem.endswith(f" takes no {word}"):
-            return replace(
-                error, problem=f"{word} is not made yet of a cylindrical cam", remedy="give stl, 3mf, ply or step"
-            )
-    return error
 
 
 def _check(values: Values, reader: Reader) -> None:
@@ -86,12 +71,13 @@ def _check(values: Values, reader: Reader) -> None:
     _check_turns(cam, reader)
     _check_guide(cam, reader)
     _check_track(cam, reader)
-    _check_drive(cam.get("drive", {}), reader)
+    drive = cam.get("drive", {})
+    check_materials(drive, reader, loaded="load" in drive)
     check_round(part, reader)
     check_files(values, reader, FILES)
     if reader.errors:
         return
-    _check_radii(values, reader)
+    check_radii(values, cam["radius"] - _track(cam).depth, cam["radius"], reader)
     _check_programs(values, reader)
     _check_limits(values, reader)
 
@@ -116,9 +102,9 @@ def _check_shoe(cam: Values, reader: Reader) -> None:
             remedy = "leave it out: a shoe is on a carriage, and its pin is a radius of the drum"
             reader.fault_at(f"{path}.{key}", "does not go with a shoe", None, remedy)
     if not given["length"] > given["width"]:
-        remedy = f"give more than {_shown(given['width'], reader)}"
+        remedy = f"give more than {reader.shown(given['width'])}"
         problem = "a shoe is longer than it is wide"
-        reader.fault_at(f"{path}.length", problem, _shown(given["length"], reader), remedy)
+        reader.fault_at(f"{path}.length", problem, reader.shown(given["length"]), remedy)
 
 
 def _check_turns(cam: Values, reader: Reader) -> None:
@@ -141,10 +127,6 @@ def _size(given: Values) -> float:
     return float(given["radius"] if "radius" in given else 0.5 * given["width"])
 
 
-def _shown(value: float, reader: Reader) -> str:
-    return f"{value / reader.mm:.9g} {reader.units}"
-
-
 def _check_guide(cam: Values, reader: Reader) -> None:
     """Note an arm that does not reach the drum, and keys of a guide and of a cone that do not go together."""
     roller, path = cam["follower"], "cam.follower"
@@ -160,9 +142,9 @@ def _check_guide(cam: Values, reader: Reader) -> None:
     height = cam["pitch_height"] - arm["pivot"]
     if not abs(height) < arm["length"]:
         low, high = (cam["pitch_height"] + sign * arm["length"] for sign in (-1.0, 1.0))
-        remedy = f"give a pivot between {_shown(low, reader)} and {_shown(high, reader)}"
+        remedy = f"give a pivot between {reader.shown(low)} and {reader.shown(high)}"
         problem = "the arm does not reach pitch_height at lift 0"
-        reader.fault_at(f"{path}.arm.pivot", problem, _shown(arm["pivot"], reader), remedy)
+        reader.fault_at(f"{path}.arm.pivot", problem, reader.shown(arm["pivot"]), remedy)
 
 
 def _roller(cam: Values, floor: float) -> Roller:
@@ -188,65 +170,42 @@ def _check_track(cam: Values, reader: Reader) -> None:
     made = _roller(cam, floor)
     least = made.size(floor)  # of a cylinder its radius
     if not least > 0.0:
-        problem = f"the cone ends in its apex before the floor, {_shown(floor, reader)} from the axis"
+        problem = f"the cone ends in its apex before the floor, {reader.shown(floor)} from the axis"
         reader.fault_at(f"{path}.taper", problem, None, "give a smaller taper, axis, or a larger radius")
         return
     if made.taper and not floor > least:
-        smaller = f"give at more than {_shown(made.radius, reader)}" if made.apex else "give a smaller taper"
-        problem = f"at the floor, {_shown(floor, reader)} from the axis, the radius of the cone is no less than that"
+        smaller = f"give at more than {reader.shown(made.radius)}" if made.apex else "give a smaller taper"
+        problem = f"at the floor, {reader.shown(floor)} from the axis, the radius of the cone is no less than that"
         reader.fault_at(f"{path}.taper", problem, None, f"{smaller}, or a smaller roller")
         return
     if not floor > least:
         at = f"{path}.from" if kind == "end" else f"cam.track.{kind}.depth"
         most = radius - _size(roller)
         remedy = (
-            f"give more than {_shown(_size(roller) + FLOOR_GAP, reader)}, or a smaller roller"
+            f"give more than {reader.shown(_size(roller) + FLOOR_GAP)}, or a smaller roller"
             if kind == "end"
-            else f"give less than {_shown(most, reader)}, or a smaller roller"
+            else f"give less than {reader.shown(most)}, or a smaller roller"
         )
         reader.fault_at(at, "the floor is no farther from the axis than the radius of the roller", None, remedy)
         return
     clearance = track["clearance"] if kind == "groove" and "clearance" in track else 0.0
     if not floor > least + clearance:
-        remedy = f"give less than {_shown(floor - least, reader)}"
+        remedy = f"give less than {reader.shown(floor - least)}"
         problem = "the upper flank is that of a roller whose radius is no less than that of the floor"
-        reader.fault_at("cam.track.groove.clearance", problem, _shown(clearance, reader), remedy)
+        reader.fault_at("cam.track.groove.clearance", problem, reader.shown(clearance), remedy)
         return
     if begins is not None and not begins > floor:
-        remedy = f"give more than {_shown(floor, reader)}, or a greater depth"
-        reader.fault_at(f"{path}.from", "the roller's end stands on the floor", _shown(begins, reader), remedy)
+        remedy = f"give more than {reader.shown(floor)}, or a greater depth"
+        reader.fault_at(f"{path}.from", "the roller's end stands on the floor", reader.shown(begins), remedy)
     inner = floor + FLOOR_GAP if begins is None else begins
     if not ends > inner or not inner < radius:
         at = f"{path}.to" if f"{path}.to" in reader.marks else f"{path}.from" if begins is not None else path
-        remedy = f"let it bear between {_shown(floor, reader)} and {_shown(radius, reader)}"
+        remedy = f"let it bear between {reader.shown(floor)} and {reader.shown(radius)}"
         reader.fault_at(at, "the roller bears nowhere", None, remedy)
     thick = 2.0 * made.size(radius)
     if kind == "rib" and not track["distance"] > thick:
-        remedy = f"give more than {_shown(thick, reader)}, and the rib's thickness"
-        reader.fault_at("cam.track.rib.distance", "the rollers leave no rib", _shown(track["distance"], reader), remedy)
-
-
-def _check_drive(drive: Values, reader: Reader) -> None:
-    for key in ("material", "roller_material"):
-        if key in drive and "load" not in drive:
-            reader.fault_at(
-                f"cam.drive.{key}", "cannot stand without load", None, "give load beside it, or leave it out"
-            )
-    if "roller_material" in drive and "material" not in drive:
-        remedy = "give material beside it"
-        reader.fault_at("cam.drive.roller_material", "cannot stand without material", None, remedy)
-
-
-def _check_radii(values: Values, reader: Reader) -> None:
-    """Note radii of a development that lie on no flank."""
-    cam = values["cam"]
-    low, high = cam["radius"] - _track(cam).depth, cam["radius"]
-    for file in values.get("export", {}).get("files", []):
-        for i, radius in enumerate(file.get("at", ())):
-            if not isinstance(radius, str) and not low - NOTHING <= radius <= high + NOTHING:
-                remedy = f"give one from {_shown(low, reader)} to {_shown(high, reader)}"
-                where = f"{file['path']}.{file['kind']}.at[{i}]"
-                reader.fault_at(where, "no flank there", _shown(radius, reader), remedy)
+        remedy = f"give more than {reader.shown(thick)}, and the rib's thickness"
+        reader.fault_at("cam.track.rib.distance", "the rollers leave no rib", reader.shown(track["distance"]), remedy)
 
 
 def _check_programs(values: Values, reader: Reader) -> None:
@@ -267,14 +226,14 @@ def _check_programs(values: Values, reader: Reader) -> None:
         for key, least in LEAST_TOLD.items():
             if key in file and file[key] < least * reader.mm:
                 remedy = f"give at least {least:g} {reader.units}"
-                reader.fault_at(f"{path}.{key}", "too little for a program", _shown(file[key], reader), remedy)
+                reader.fault_at(f"{path}.{key}", "too little for a program", reader.shown(file[key]), remedy)
         if file.get("taper", 0.0) > whole.taper + SAME_TAPER:
             problem, own = "a cutter tapers at most as its roller", math.degrees(file["taper"])
             most = downward(math.degrees(whole.taper), 6)
             remedy = f"give at most {most} degrees" if whole.taper else "leave it out: the roller is a cylinder"
             reader.fault_at(f"{path}.taper", problem, f"{own:.9g} degrees", remedy)
             continue
-        widest, told = 2.0 * roller, _shown(file["cutter"], reader)
+        widest, told = 2.0 * roller, reader.shown(file["cutter"])
         narrowest = roller + 0.5 * clearance + RIDGE if kind == "groove" else 0.0
         allowance = file.get("allowance", 0.0)
         if kind == "groove":
@@ -282,18 +241,18 @@ def _check_programs(values: Values, reader: Reader) -> None:
         # that of a cone is no round figure
         if file["cutter"] > widest + (NOTHING if not whole.taper else NOTHING_MORE * widest):
             if widest <= narrowest:
-                remedy = f"give an allowance below {_shown(0.5 * (2.0 * roller - narrowest), reader)}"
-                reader.fault_at(f"{path}.allowance", "leaves no room for a cutter", _shown(allowance, reader), remedy)
+                remedy = f"give an allowance below {reader.shown(0.5 * (2.0 * roller - narrowest))}"
+                reader.fault_at(f"{path}.allowance", "leaves no room for a cutter", reader.shown(allowance), remedy)
                 continue
             what = "the roller" if widest == 2.0 * roller else "the roller less the allowance on both flanks"
-            most = f"{downward(widest / reader.mm, 7)} {reader.units}" if whole.taper else _shown(widest, reader)
+            most = f"{downward(widest / reader.mm, 7)} {reader.units}" if whole.taper else reader.shown(widest)
             what = f"{what} at the floor" if whole.taper else what
             remedy = f"give at most {most}"
             if whole.taper and "taper" not in file:
                 remedy += f", and taper: {math.degrees(whole.taper):.4f} for the cone of the roller"
             reader.fault_at(f"{path}.cutter", f"a cutter wider than {what} cuts the flanks away", told, remedy)
         elif file["cutter"] < narrowest - NOTHING:
-            remedy = f"give at least {_shown(narrowest, reader)}"
+            remedy = f"give at least {reader.shown(narrowest)}"
             reader.fault_at(f"{path}.cutter", "does not clear the groove along both flanks", told, remedy)
 
 
@@ -347,31 +306,18 @@ def _built(values: Values, document: Document, reader: Reader) -> DrumRecipe:
         side: Literal[-1, 1] = -1 if arm.get("side") == "leading" else 1
         start = math.asin((level - arm["pivot"]) / arm["length"])
         guide = Arm(arm["length"], arm["offset"], arm["pivot"], side, start)
-    keyway = KEYWAY.build(part)
     return DrumRecipe(
-        name=values["name"],
-        about=values.get("about", ""),
-        units=values.get("units", "mm"),
-        mm=reader.mm,
         rotation=values.get("rotation", "cw"),
         export=build_export(values.get("export", {}), FILES, "stl"),
-        verify=Verify(angles=ANGLES, **values.get("verify", {})),
         radius=cam["radius"],
         track=track,
         roller=_roller(cam, cam["radius"] - track.depth),
         guide=guide,
         motion=cam["motion"],
-        part=Part(
-            thickness=part["length"],
-            wall=part.get("wall"),
-            density=part.get("density"),
-            features=() if keyway is None else (keyway,),
-            **bore.build_bore(part),
-        ),
+        part=round_part(part),
         undercut=cam.get("undercut", "refuse"),
         turns=cam.get("turns", 1),
         drive=Drive(**cam.get("drive", {})),
-        limits=build_bounds(values.get("limits", {})),
         profile=values.get("made", {}).get("profile"),
-        **vars(document),
+        **common_values(values, document, reader),
     )

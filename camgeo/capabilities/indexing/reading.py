@@ -3,52 +3,44 @@
 from __future__ import annotations
 
 import math
-from typing import TYPE_CHECKING, Any, Literal
+from typing import TYPE_CHECKING
 
-from camgeo.capabilities.indexing.forms import Barrel, Globoid
+from camgeo.capabilities.indexing.form_rules import rules_of
 from camgeo.capabilities.indexing.index_recipe import Drive, IndexRecipe
-from camgeo.capabilities.indexing.keys import FILES, FLOOR_GAP, RECIPE
-from camgeo.capabilities.indexing.turrets import BarrelTurret, GloboidTurret, Roller, reaching
-from camgeo.common.rounding import downward, upward
+from camgeo.capabilities.indexing.keys import FILES, RECIPE
 from camgeo.motions.motion import check_filled
-from camgeo.part import bore
-from camgeo.part.keyway import FEATURE as KEYWAY
 from camgeo.part.keyway import check_round
-from camgeo.part.part import Part
 from camgeo.recipe.export import build_export, check_files
-from camgeo.recipe.figure_bounds import build_bounds, check_bounds
-from camgeo.recipe.own_kind import begin, finish
-from camgeo.recipe.recipe import Verify
+from camgeo.recipe.figure_bounds import check_bounds
+from camgeo.recipe.materials import check_materials
+from camgeo.recipe.own_kind import NotYet, begin, common_values, finish, round_part
+from camgeo.recipe.radii import check_radii
 from kin.numeric.angles import TURN
-from kin.numeric.records import replace
 
 if TYPE_CHECKING:
     from pathlib import Path
 
     from camgeo.capabilities.indexing.turrets import Turret
     from camgeo.recipe.document import Document
-    from camgeo.schema.errors import RecipeError
     from camgeo.schema.reader import Reader, Values
     from camgeo.schema.yaml_source import Source
 
-ANGLES = 1  # what a disc would be judged at: such a cam is judged at all angles
-NOT_YET = {
-    "cam.sizing": "give the radius of the blank, turret.radius and turret.roller",
-    "manufacture": "give stl, 3mf or ply to a machine's own software",
-    "made": "measured points of an indexing cam are not judged",
-}
-"""Keys of what is not made, each with what is."""
-FORMATS_NOT_YET = ("svg", "step", "gcode")
-NOTHING = 1e-9  # mm: a length below it is none
-APART = 0.8  # of the distance in a globoid's throat from a roller's axis to the next one, that a roller may fill
-LEAST_ROLLER = 0.01  # of a barrel's radius or a globoid's distance: the time of a proof grows with its inverse
-STEEPEST_END = math.sin(math.radians(80.0))  # of a globoid's end face, seen from the turret's axis
+NOT_YET = NotYet(
+    "an indexing cam",
+    {
+        "cam.sizing": "give the radius of the blank, turret.radius and turret.roller",
+        "manufacture": "give stl, 3mf or ply to a machine's own software",
+        "made": "measured points of an indexing cam are not judged",
+    },
+    ("svg", "step", "gcode"),
+    "stl, 3mf or ply",
+)
 
 
 def reader_of(source: Source) -> tuple[Reader, Values]:
     """Reader that has read the text of an indexing cam, but for faults between its keys; and its values."""
     reader, values = begin(source, "indexing", RECIPE, swings=True)
-    reader.errors = [_not_yet(error) for error in reader.errors]
+    reader.errors = [NOT_YET.told(error) for error in reader.errors]
     return reader, values
 
 
@@ -57,79 +49,37 @@ def read_indexing(source: Source, path: Path) -> IndexRecipe:
     return finish(*reader_of(source), path, _check, _built)
 
 
-def _not_yet(error: RecipeError) -> RecipeError:
-    """The fault of a key or a format that is not made, said so; any other fault as it is."""
-    unknown = error.problem == "unknown key" or error.problem.endswith(f" takes no {error.path}")
-    if unknown and error.path in NOT_YET:
-        return replace(error, problem="not made yet", remedy=f"leave it out: {NOT_YET[error.path]}")
-    for word in FORMATS_NOT_YET:
-        if error.problem.endswith(f" takes no {word}"):
-            return replace(error, problem=f"{word} is not made yet of an indexing cam", remedy="give stl, 3mf or ply")
-    return error
-
-
-def _shown(value: float, reader: Reader) -> str:
-    return f"{value / reader.mm:.9g} {reader.units}"
-
-
-def _less(value: float, reader: Reader) -> str:
-    """A length a little below a bound, mm, in the recipe's unit."""
-    return f"{downward(value / reader.mm, 5)} {reader.units}"
-
-
-def _more(value: float, reader: Reader) -> str:
-    return f"{upward(value / reader.mm, 5)} {reader.units}"
-
-
 def _check(values: Values, reader: Reader) -> None:
     cam, part = values["cam"], values["part"]
     why = "a turn of the cam advances the turret once"
     check_filled(cam["motion"], "cam.motion", TURN, "the whole turn, 360 degrees", reader, why=why)
-    _check_turret(cam, reader)
-    _check_drive(cam.get("drive", {}), reader)
-    check_round(part, reader)
-    check_files(values, reader, FILES)
-    if reader.errors:
-        return
-    (_check_barrel if "barrel" in cam else _check_globoid)(values, reader)
-    if reader.errors:
-        return
-    _check_roller(values, reader)
-    _check_developments(values, reader)
-    _check_limits(values, reader)
-
-
-def _check_turret(cam: Values, reader: Reader) -> None:
-    """Note keys of the turret that do not go together, or not with the form of the cam."""
-    turret, path = cam["turret"], "cam.turret"
-    if "barrel" in cam and "radius" not in turret:
-        remedy = "give the distance of the rollers' axes from the turret's"
-        reader.fault(reader.marks[path], f"{path}.radius", "missing, needed with a barrel", None, remedy)
-    if "globoid" in cam:
-        for key, why in (("radius", "its rollers are radial"), ("side", "it has no side")):
-            if key in turret:
-                remedy = f"leave it out: {why}"
-                reader.fault_at(f"{path}.{key}", "does not go with a globoid", None, remedy)
-    if "preload" in turret:
-        if "clearance" in turret:
-            reader.fault_at(f"{path}.preload", "does not go with clearance", None, "leave one of them out")
-        if not turret["preload"] < turret["roller"]:
-            remedy = f"give a few hundredths of a mm, less than {_shown(turret['roller'], reader)}"
-            problem = "no less than the radius of the roller"
-            reader.fault_at(f"{path}.preload", problem, _shown(turret["preload"], reader), remedy)
-
-
-def _check_drive(drive: Values, reader: Reader) -> None:
-    for key in ("material", "roller_material"):
-        if key in drive and not _loaded(drive):
-            problem = "cannot stand without load, or rpm and inertia"
-            reader.fault_at(f"cam.drive.{key}", problem, None, "give load beside it, or leave it out")
-    if "roller_material" in drive and "material" not in drive:
-        remedy = "give material beside it"
-        reader.fault_at("cam.drive.roller_material", "cannot stand without material", None, remedy)
+    rules, drive = rules_of(values, reader), cam.get("drive", {})
+    rules.check_keys()
+    _check_preload(cam["turret"], reader)
+    check_materials(drive, reader, loaded=_loaded(drive), need="load, or rpm and inertia")
     if "inertia" in drive and "rpm" not in drive:
         remedy = "give rpm beside it, or leave it out"
         reader.fault_at("cam.drive.inertia", "cannot stand without rpm", None, remedy)
+    check_round(part, reader)
+    check_files(values, reader, FILES)
+    if not reader.errors:
+        rules.check_form()
+    if not reader.errors:
+        rules.check_roller()
+        _check_developments(values, rules.built(), reader)
+        _check_limits(values, reader)
+
+
+def _check_preload(turret: Values, reader: Reader) -> None:
+    """Note a preload beside a clearance, and one that is no less than the roller."""
+    path = "cam.turret.preload"
+    if "preload" not in turret:
+        return
+    if "clearance" in turret:
+        reader.fault_at(path, "does not go with clearance", None, "leave one of them out")
+    if not turret["preload"] < turret["roller"]:
+        remedy = f"give a few hundredths of a mm, less than {reader.shown(turret['roller'])}"
+        reader.fault_at(path, "no less than the radius of the roller", reader.shown(turret["preload"]), remedy)
 
 
 def _loaded(drive: Values) -> bool:
@@ -137,110 +87,15 @@ def _loaded(drive: Values) -> bool:
     return "load" in drive or ("inertia" in drive and "rpm" in drive)
 
 
-def _check_barrel(values: Values, reader: Reader) -> None:
-    """Note a floor that the rollers of a barrel do not pass."""
-    cam = values["cam"]
-    most = cam["barrel"]["radius"] - _largest(cam["turret"])
-    if not cam["depth"] < most:
-        problem = "the floor is no farther from the axis than the radius of the roller"
-        remedy = f"give less than {_less(most, reader)}, or a smaller roller"
-        remedy = remedy if most > NOTHING else "give a smaller roller, or a larger blank"
-        reader.fault_at("cam.depth", problem, _shown(cam["depth"], reader), remedy)
-
-
-def _check_globoid(values: Values, reader: Reader) -> None:
-    """Note a globoid without a core, and one whose ends lie beside its throat."""
-    cam, length = values["cam"], values["part"]["length"]
-    form, height = cam["globoid"], _height(values)
-    least = form["radius"] + cam["depth"] + _largest(cam["turret"])
-    if not form["distance"] > least:
-        problem = "the floor is no farther from the cam's axis than the radius of the roller"
-        remedy = f"give more than {_more(least, reader)}, or a smaller globoid.radius or depth"
-        reader.fault_at("cam.globoid.distance", problem, _shown(form["distance"], reader), remedy)
-    most = STEEPEST_END * form["radius"]
-    if not max(abs(height), abs(length - height)) < most:
-        problem = "the ends of the cam lie beside the throat, which is an arc about the turret's axis"
-        remedy = f"give less than {_less(2.0 * most, reader)}, with the turret's axis in the middle of it"
-        reader.fault_at("part.length", problem, _shown(length, reader), remedy)
-
-
-def _largest(turret: Values) -> float:
-    """The larger radius of a roller, mm, of those of both flanks."""
-    return float(turret["roller"] + turret.get("clearance", 0.0))
-
-
-def _height(values: Values) -> float:
-    """Height of the turret's axis over the lower face, mm."""
-    return float(values["cam"]["turret"].get("height", 0.5 * values["part"]["length"]))
-
-
-def _ends(cam: Values) -> tuple[float, float]:
-    """Where a roller begins and ends to bear, mm."""
-    turret, depth = cam["turret"], cam["depth"]
-    if "barrel" in cam:
-        blank = cam["barrel"]["radius"]
-        inner, outer = blank - depth + FLOOR_GAP, blank
-    else:
-        blank = cam["globoid"]["radius"]
-        inner, outer = blank, reaching(blank + depth - FLOOR_GAP, turret["roller"])
-    return turret.get("from", inner), turret.get("to", outer)
-
-
-def _check_roller(values: Values, reader: Reader) -> None:
-    """Note rollers that reach the floor, bear nowhere, or stand in one another's way."""
-    cam = values["cam"]
-    turret, path, (begins, ends) = cam["turret"], "cam.turret", _ends(cam)
-    barrel = "barrel" in cam
-    blank = cam["barrel" if barrel else "globoid"]["radius"]
-    floor = blank - cam["depth"] if barrel else blank + cam["depth"]
-    deepest = floor if barrel else reaching(floor, turret["roller"])
-    if barrel and not begins > floor:
-        remedy = f"give more than {_shown(floor, reader)}, or a greater depth"
-        reader.fault_at(f"{path}.from", "the roller's end stands on the floor", _shown(begins, reader), remedy)
-    elif not barrel and "to" in turret and not ends < deepest:
-        remedy = f"give less than {_less(deepest, reader)}, or a greater depth"
-        problem = "the rim of the roller's end stands on the floor"
-        reader.fault_at(f"{path}.to", problem, _shown(ends, reader), remedy)
-    elif not ends > begins or (not begins < blank if barrel else not ends > blank):
-        at = next((f"{path}.{key}" for key in ("from", "to") if key in turret), "cam.depth")
-        low, high = min(deepest, blank), max(deepest, blank)
-        remedy = f"let it bear between {_shown(low, reader)} and {_less(high, reader)}"
-        rim = 0.0 if barrel else math.hypot(begins, turret["roller"]) - begins
-        remedy = remedy if at != "cam.depth" else f"give more than {_more(FLOOR_GAP + rim, reader)}"
-        reader.fault_at(at, "the roller bears nowhere", None, remedy)
-    least = LEAST_ROLLER * (blank if barrel else cam["globoid"]["distance"])
-    if turret["roller"] < least:
-        problem = f"too small beside the cam: it is less than {100.0 * LEAST_ROLLER:g} percent of "
-        problem += "the blank's radius" if barrel else "the distance of both axes"
-        remedy = f"give at least {_more(least, reader)}"
-        reader.fault_at(f"{path}.roller", problem, _shown(turret["roller"], reader), remedy)
-    half = math.pi / turret["stops"]
-    if barrel:
-        room = turret["radius"] * math.sin(half)
-    else:
-        room = min(begins * math.sin(half), APART * blank * math.sin(min(2.0 * half, 0.5 * math.pi)))
-    if not turret["roller"] < room:
-        problem = "neighbouring rollers of the turret touch one another"
-        remedy = f"give less than {_less(room, reader)}, or fewer stops"
-        reader.fault_at(f"{path}.roller", problem, _shown(turret["roller"], reader), remedy)
-
-
-def _check_developments(values: Values, reader: Reader) -> None:
-    """Note developments of a globoid, and radii of a development that lie on no flank."""
-    cam = values["cam"]
+def _check_developments(values: Values, turret: Turret, reader: Reader) -> None:
+    """Note developments of a turret's cam that has none, and radii of a development that lie on no flank."""
+    if turret.unrolls:
+        check_radii(values, turret.form.floor, turret.form.blank, reader)
+        return
     for file in values.get("export", {}).get("files", []):
-        if file["kind"] != "dxf":
-            continue
-        if "globoid" in cam:
+        if file["kind"] == "dxf":
             remedy = "give stl, 3mf or ply: a torus is not unrolled without stretching"
             reader.fault_at(file["path"], "a globoid has no development", None, remedy)
-            continue
-        low, high = cam["barrel"]["radius"] - cam["depth"], cam["barrel"]["radius"]
-        for i, radius in enumerate(file.get("at", ())):
-            if not isinstance(radius, str) and not low - NOTHING <= radius <= high + NOTHING:
-                remedy = f"give one from {_shown(low, reader)} to {_shown(high, reader)}"
-                where = f"{file['path']}.{file['kind']}.at[{i}]"
-                reader.fault_at(where, "no flank there", _shown(radius, reader), remedy)
 
 
 def _check_limits(values: Values, reader: Reader) -> None:
@@ -262,46 +117,18 @@ def _check_limits(values: Values, reader: Reader) -> None:
 
 def _built(values: Values, document: Document, reader: Reader) -> IndexRecipe:
     """Make the recipe of values in which there is no fault."""
-    cam, part = values["cam"], values["part"]
-    keyway, given = KEYWAY.build(part), cam["turret"]
-    inner, outer = _ends(cam)
+    cam, rules = values["cam"], rules_of(values, reader)
+    given, turret = cam["turret"], rules.built()
     return IndexRecipe(
-        name=values["name"],
-        about=values.get("about", ""),
-        units=values.get("units", "mm"),
-        mm=reader.mm,
         rotation=values.get("rotation", "cw"),
         export=build_export(values.get("export", {}), FILES, "stl"),
-        verify=Verify(angles=ANGLES, **values.get("verify", {})),
-        turret=_turret(values),
-        roller=Roller(given["roller"], inner, outer),
+        turret=turret,
+        roller=rules.roller(turret),
         stops=given["stops"],
         start=given.get("start", -math.pi / given["stops"]),
         clearance=given.get("clearance", 0.0) - given.get("preload", 0.0),
         motion=cam["motion"],
-        part=Part(
-            thickness=part["length"],
-            wall=part.get("wall"),
-            density=part.get("density"),
-            features=() if keyway is None else (keyway,),
-            **bore.build_bore(part),
-        ),
+        part=round_part(values["part"]),
         drive=Drive(**cam.get("drive", {})),
-        limits=build_bounds(values.get("limits", {})),
-        **vars(document),
+        **common_values(values, document, reader),
     )
-
-
-def _turret(values: Values) -> Turret:
-    """The turret, with the form of the cam beside it."""
-    cam, length, height = values["cam"], values["part"]["length"], _height(values)
-    given = cam["turret"]
-    common: dict[str, Any] = {"depth": cam["depth"], "height": height, "length": length}
-    if "globoid" in cam:
-        distance = cam["globoid"]["distance"]
-        return GloboidTurret(Globoid(radius=cam["globoid"]["radius"], distance=distance, **common))
-    side: Literal[-1, 1] = -1 if given.get("side") == "leading" else 1
-    pitch = given["radius"]
-    usual = 0.5 * side * pitch * (1.0 + math.cos(math.pi / given["stops"]))
-    offset = cam["barrel"].get("offset", usual)
-    return BarrelTurret(Barrel(radius=cam["barrel"]["radius"], offset=offset, pitch=pitch, side=side, **common))

@@ -22,11 +22,11 @@ from camgeo.capabilities.linear.keys import (
 )
 from camgeo.part.mark import Mark
 from camgeo.recipe.export import build_export, check_files
-from camgeo.recipe.figure_bounds import build_bounds, check_bounds
+from camgeo.recipe.figure_bounds import check_bounds
 from camgeo.recipe.figures import LEAST_WALL, PRESSURE_ANGLE
 from camgeo.recipe.machining import build_manufacture
-from camgeo.recipe.own_kind import begin, entry_at, finish
-from camgeo.recipe.recipe import Verify
+from camgeo.recipe.materials import check_materials
+from camgeo.recipe.own_kind import begin, common_values, entry_at, finish
 from camgeo.registry.formats import FORMATS
 
 if TYPE_CHECKING:
@@ -37,7 +37,6 @@ if TYPE_CHECKING:
     from camgeo.schema.yaml_source import Source
 
 PROGRAM_NEEDS = ("cutter", "feed", "plunge", "spindle", "depth_of_cut", "safe_height")
-ANGLES = 1  # what a disc would be judged at: a plate is judged at all places
 
 
 def reader_of(source: Source) -> tuple[Reader, Values]:
@@ -78,8 +77,8 @@ def _check_follower(cam: Values, reader: Reader) -> None:
     height = cam["base"] + follower.get("radius", 0.0) - arm["pivot"]
     if not abs(height) < arm["length"]:
         low, high = (cam["base"] + follower.get("radius", 0.0) + sign * arm["length"] for sign in (-1.0, 1.0))
-        remedy = f"give a pivot between {low / reader.mm:.6g} and {high / reader.mm:.6g} {reader.units}"
-        shown = f"{arm['pivot'] / reader.mm:.9g} {reader.units}"
+        remedy = f"give a pivot between {low / reader.mm:.6g} and {reader.shown(high, 6)}"
+        shown = reader.shown(arm["pivot"])
         reader.fault_at(f"{path}.arm.pivot", "the arm does not reach the plate at lift 0", shown, remedy)
 
 
@@ -139,11 +138,7 @@ def _check_drive(drive: Values, reader: Reader) -> None:
             reader.fault_at(f"{path}.crank.rod", "not above the crank's radius", None, remedy)
     if "back" in drive and "forth" not in drive:
         reader.fault_at(f"{path}.back", "cannot stand without forth", None, "give forth beside it, or leave it out")
-    for key in ("width", "material", "roller_material"):
-        if key in drive and "load" not in drive:
-            reader.fault_at(f"{path}.{key}", "cannot stand without load", None, "give load beside it, or leave it out")
-    if "roller_material" in drive and "material" not in drive:
-        reader.fault_at(f"{path}.roller_material", "cannot stand without material", None, "give material beside it")
+    check_materials(drive, reader, loaded="load" in drive, keys=("width", "material", "roller_material"))
 
 
 def _check_part(part: Values, reader: Reader) -> None:
@@ -152,7 +147,7 @@ def _check_part(part: Values, reader: Reader) -> None:
         if thickness is None:
             reader.fault_at("part.chamfer", "cannot stand without a thickness", None, "give part.thickness")
         elif not 2.0 * part["chamfer"] < thickness:
-            remedy = f"give less than {0.5 * thickness / reader.mm:.6g} {reader.units}"
+            remedy = f"give less than {reader.shown(0.5 * thickness, 6)}"
             reader.fault_at("part.chamfer", "not below half the thickness", None, remedy)
     for i, slot in enumerate(part.get("slots", [])):
         if not slot["width"] < slot["length"]:
@@ -232,12 +227,7 @@ def _built(values: Values, document: Document, reader: Reader) -> LinearRecipe:
     milling, _ = build_manufacture(values.get("manufacture", {}))
     sizing = cam.get("sizing", {}).get(PRESSURE_ANGLE)
     return LinearRecipe(
-        name=values["name"],
-        about=values.get("about", ""),
-        units=values.get("units", "mm"),
-        mm=reader.mm,
         export=build_export(values.get("export", {})),
-        verify=Verify(angles=ANGLES, **values.get("verify", {})),
         base=cam["base"],
         follower=touch,
         motion=source,
@@ -250,8 +240,7 @@ def _built(values: Values, document: Document, reader: Reader) -> LinearRecipe:
         steepest=None if sizing is None else sizing["at_most"],
         drive=Drive(**{"back": drive.get("forth"), **drive, "crank": None if crank is None else CrankDrive(**crank)}),
         manufacture=milling,
-        limits=build_bounds(values.get("limits", {})),
-        **vars(document),
+        **common_values(values, document, reader),
     )
 
 
