@@ -6,12 +6,20 @@ from abc import ABC, abstractmethod
 from functools import cached_property
 from typing import TYPE_CHECKING, Any, Protocol
 
+import numpy as np
+
 from camgeo.api.root import Root
 from camgeo.api.shown import Shown
+from camgeo.checks.declared import LIMIT
+from camgeo.common.arguments import numbers_of, short_repr, whole_of
+from camgeo.common.errors import CallError
+from camgeo.synthesis.expected_checks import Foreseen
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Mapping, Sequence
     from pathlib import Path
+
+    from numpy.typing import ArrayLike
 
     from camgeo.api.check import Check, Figures
     from camgeo.api.shown import Drawing
@@ -22,7 +30,11 @@ if TYPE_CHECKING:
     from camgeo.output.own_kind import OwnKind
     from camgeo.output.pipeline import Outcome
     from camgeo.recipe.export import FileRequest
-    from camgeo.synthesis.expected_checks import Foreseen
+    from camgeo.recipe.figure_bounds import Bound
+    from camgeo.recipe.recipe import Order
+    from kin.numeric.arrays import Array
+
+MOST_DERIVATIVE = 6  # of a motion by its input
 
 
 class Library(Protocol):
@@ -70,7 +82,6 @@ def root_of_kind(
         raise recipe.error("cam.kind", problem, kind, f"give verify {judged}")
 
     def explain(entry: dict[str, Any], _: dict[str, Any], recipe: Any, shown: str | None) -> str:  # noqa: ANN401
-        from camgeo.checks.declared import LIMIT
         from camgeo.report import failure
 
         name, answers = entry["name"], library()
@@ -108,7 +119,7 @@ class ShownKind(Shown):
 
     def picture(self) -> dict[str, Any]:
         """Data of the mechanism."""
-        return self.kind.picture(self._design)
+        return self.kind.page_of().drawn(self._design)
 
     def still(self, at: float = 0.0) -> str:
         """The kind's bodies, drawn once."""
@@ -123,7 +134,7 @@ class ShownKind(Shown):
 
     def looks(self) -> tuple[str, str]:
         """Style and code of the kind."""
-        return self.kind.looks()
+        return self.kind.page_of().looks()
 
     @property
     def figures(self) -> Figures:
@@ -145,6 +156,37 @@ class ShownKind(Shown):
     def meshes(self, request: FileRequest) -> list[Mesh]:
         """The mesh of the part."""
         return [self.kind.mesh(self._design, request)]
+
+
+def order_of(derivative: int) -> int:
+    """Order of a derivative of a motion; raises CallError unless it is 0 to 6, TypeError for what is no integer."""
+    order = whole_of("derivative", derivative)
+    if order not in range(MOST_DERIVATIVE + 1):
+        raise CallError(f"a derivative is one of order 0 to {MOST_DERIVATIVE}, not {short_repr(order)}")
+    return order
+
+
+def angles_of(theta: ArrayLike) -> Array:
+    """Shaft angles as floats; raises CallError unless all are finite, TypeError for what is no number."""
+    places = numbers_of("theta", theta)
+    if not np.isfinite(places).all():
+        raise CallError("shaft angles are finite")
+    return places
+
+
+def foreseen_with(
+    names: Sequence[str], recipe: Order, limits: Sequence[Bound], of_file: Callable[[FileRequest], list[str]]
+) -> tuple[Foreseen, ...]:
+    """Checks that a report is sure to have: those of the design by their `names`, of limits, and of each judged file.
+
+    `of_file` gives the names of the checks of a requested file.
+    """
+    expected = [Foreseen(name) for name in (*names, *(f"{LIMIT}{bound.figure}" for bound in limits))]
+    for request in recipe.export.files:
+        if request.format.contour:
+            (file,) = recipe.filenames(request)
+            expected += [Foreseen(name, file) for name in of_file(request)]
+    return tuple(dict.fromkeys(expected))
 
 
 class KindDesign(ABC):

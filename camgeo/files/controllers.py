@@ -92,7 +92,7 @@ def _write_single(path: Path, rows: Rows, head: Sequence[str]) -> None:
 
 
 def _write_motion_function(path: Path, rows: Rows, head: Sequence[str]) -> None:
-    """Points of `MC_MotionFunctionPoint`, each with the function up to the next one; one leads to the next."""
+    """Write points of `MC_MotionFunctionPoint`, each with the function up to the next one."""
     one = np.ones_like(rows.degrees)
     point = [np.arange(1.0, len(one) + 1.0), one * MOTION_FUNCTION.code_of("quintic"), one * MOTION_POINT, one]
     table = np.column_stack([*point, rows.degrees, *rows.slave])

@@ -58,7 +58,7 @@ class Building:
         return np.arange(self.count - len(points), self.count)
 
     def mesh(self, noun: str, *, mirrored: bool) -> Mesh:
-        """The mesh, mirrored (y -> -y) if so; raises RegionError, by the body's `noun`, for a triangle without area."""
+        """The mesh, `mirrored` (y -> -y) on demand; RegionError, with the `noun`, for a triangle without area."""
         points, triangles = np.concatenate(self.points), np.concatenate(self.triangles)
         if mirrored:
             points = points * np.array([1.0, -1.0, 1.0]) + 0.0
@@ -83,9 +83,9 @@ class Item:
 
 @dataclass(frozen=True)
 class MeshFacts:
-    """What a solid's mesh is of its contours: their number of `vertices`, and how far they are from the exact ones.
+    """Facts on the contours in a mesh: their number of `vertices`, and the `bound` of their distance from exact ones.
 
-    `displacement` is the farthest, mm, that rounding moved a vertex of any outline; the `bound` of the contours has it.
+    `displacement` is the greatest distance, mm, by which rounding moved a vertex of any outline; `bound` includes it.
     """
 
     vertices: int

@@ -174,7 +174,7 @@ def sagittas(curve: Curve, edges: PlacedEdges, sides: Array, tolerance: float) -
 def prove_edges(curve: Curve, edges: PlacedEdges, tolerance: float) -> ProvedEdges:
     """Edges with their proved deviation, its bounds sharp to a share of the `tolerance`, mm, as in `chain_deviation`.
 
-    Of no more pieces than `deviation.FEW` they are sharpened further where only they exceed the tolerance.
+    Of up to `deviation.FEW` pieces, bounds that alone exceed the tolerance are sharpened further.
     An edge across a break of the curve is proved on both sides of the break.
     """
     chain = Chain(

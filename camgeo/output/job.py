@@ -129,7 +129,7 @@ class Job:
 
     def tolerance(self, request: FileRequest) -> float:
         """Tolerance of a file, mm: that of the request, or else of the recipe's `export`."""
-        return request.tolerance or self.recipe.export.tolerance
+        return self.recipe.tolerance(request)
 
     def tolerance_field(self, request: FileRequest) -> str:
         """Path of the field that sets a file's tolerance."""

@@ -22,6 +22,7 @@ if TYPE_CHECKING:
 
     from camgeo.files.layer_outline import LayerOutline
     from camgeo.files.mesh import Mesh
+    from camgeo.fit.bound import Bound
     from camgeo.measures.extension import Results
     from camgeo.measures.placed import Figure
     from camgeo.measures.rule_remark import RuleRemark
@@ -31,6 +32,15 @@ if TYPE_CHECKING:
     from kin.law.sources.motion import Kept
     from kin.numeric.arrays import Array
     from kin.numeric.check import Check
+
+
+class FlankVerdict(Protocol):
+    """Protocol of kin's verdict on a flank."""
+
+    @property
+    def pieces(self) -> int | None:
+        """Number of pieces of the file on this flank, as its format counts them; None where it counts none."""
+        ...
 
 
 class Verdict(Protocol):
@@ -49,6 +59,11 @@ class Verdict(Protocol):
     @property
     def units(self) -> float | None:
         """Length, mm, of a unit of the file as it was read; None where nothing was read."""
+        ...
+
+    @property
+    def flanks(self) -> Sequence[FlankVerdict]:
+        """Verdicts on the flanks in the file."""
         ...
 
 
@@ -81,10 +96,30 @@ class Judging(Protocol[D_contra, V_co]):
         request: FileRequest | None,
         tolerance: float,
         *,
-        units: float | None,
-        gap: float | None,
+        units: float | None = None,
+        gap: float | None = None,
     ) -> V_co:
         """Verdict on a file within a tolerance, mm."""
+        ...
+
+
+class Page(Protocol[D_contra]):
+    """Protocol of the module that draws the page of a kind of cams."""
+
+    def drawn(self, design: D_contra, /) -> dict[str, Any]:
+        """Data of its script that show and move the mechanism: entries of `camgeo.report.page.page.picture`."""
+        ...
+
+    def script(self, design: D_contra, made: Sequence[Made[Any]], /) -> dict[str, Any]:
+        """All data of its script, for the files that were made or given; there may be none."""
+        ...
+
+    def panels(self, design: D_contra, report: dict[str, Any], /) -> str:
+        """HTML of the panels that only this kind has."""
+        ...
+
+    def looks(self) -> tuple[str, str]:
+        """CSS of these panels, and JavaScript of the players that `script` names."""
         ...
 
 
@@ -98,6 +133,22 @@ class Made(NamedTuple, Generic[V]):
     file: FileResult
     checks: tuple[Check, ...] = ()
     verdict: V | None = None
+
+
+def judged_made(
+    judge: Judging[D_contra, V],
+    design: D_contra,
+    path: Path,
+    request: FileRequest,
+    *,
+    clock: Clock,
+    fit: tuple[int | None, Bound],
+) -> Made[V]:
+    """A file that was written, with kin's verdict on it; `fit` is its number of pieces, None for a mesh, and bound."""
+    tolerance = design.recipe.tolerance(request)
+    with clock.stage(f"judge {request.kind}"):
+        verdict = judge(design, path, request, tolerance)
+    return Made(FileResult(path, request, tolerance, *fit, units=verdict.units), verdict.checks, verdict)
 
 
 class Told(NamedTuple):
@@ -144,12 +195,8 @@ class OwnKind(Generic[D, V]):
     foresee   refuses what is certain to be refused of a file; raises MissingExtraError where a package is missing
     maker     function that makes and judges a file of a design: (request, path)
     judged    kin's verdict on a file
-    pieces    number of pieces of a file by its verdict
     seen      bodies to be drawn, over the kind's input, and of what is drawn anew the shape at a step
-    picture   data of its script that show and move the mechanism: entries of `camgeo.report.page.page.picture`
-    script    all data of its script, of a page without files too: (design, files)
-    panels    HTML of its own panels: (design, report)
-    looks     rules of style of these panels, and the code of the players that `script` names
+    page_of   module that draws its page, imported when it is called
     motion    the motion as the recipe states it
     drawings  drawings at true size within a tolerance, mm: titles, with closed outlines and open lines (n, 2), mm
     mesh      mesh of the part for a request of one; raises RecipeErrors where none can be made
@@ -165,12 +212,8 @@ class OwnKind(Generic[D, V]):
     foresee: Callable[[D, FileRequest], None]
     maker: Callable[[D, Clock], Callable[[FileRequest, Path], Made[V]]]
     judged: Judging[D, V]
-    pieces: Callable[[V], int]
     seen: Callable[[D, int], Scene]
-    picture: Callable[[D], dict[str, Any]]
-    script: Callable[[D, Sequence[Made[V]]], dict[str, Any]]
-    panels: Callable[[D, dict[str, Any]], str]
-    looks: Callable[[], tuple[str, str]]
+    page_of: Callable[[], Page[D]]
     motion: Callable[[D], StatedMotion]
     drawings: Callable[[D, float], list[tuple[str, Sequence[LayerOutline | Array]]]]
     mesh: Callable[[D, FileRequest], Mesh]
@@ -239,15 +282,16 @@ class OwnKind(Generic[D, V]):
         clock = Clock()
         checks, figures = self._examined(design, clock)
         report = self._run(design, figures, [], checks, clock=clock).report
-        told = {key: finite(report[key]) for key in ("checks", "remarks")}
-        return {**self.script(design, ()), "panels": self.panels(design, report), **told}
+        told, page = {key: finite(report[key]) for key in ("checks", "remarks")}, self.page_of()
+        return {**page.script(design, ()), "panels": page.panels(design, report), **told}
 
     def page(self, design: D, made: Sequence[Made[V]], report: dict[str, Any]) -> str:
         """HTML of the page, from the design, the files that were made or given, and the report."""
         from camgeo.report.page.page import filled
 
-        style, code = self.looks()
-        data, panels = self.script(design, made), self.panels(design, report)
+        page = self.page_of()
+        style, code = page.looks()
+        data, panels = page.script(design, made), page.panels(design, report)
         return filled(design.recipe, data, report, panels=panels, style=style, code=code)
 
     def _judged(self, recipe: Order, paths: list[Path], bounds: Bounds) -> Run[D, V]:
@@ -268,7 +312,8 @@ class OwnKind(Generic[D, V]):
             with clock.stage("judge"):
                 verdict = self.judged(design, path, request, within, units=units, gap=gap)
             asked = request or FileRequest(verdict.kind)
-            file = FileResult(path, asked, within, self.pieces(verdict), units=verdict.units)
+            pieces = sum(flank.pieces or 0 for flank in verdict.flanks)
+            file = FileResult(path, asked, within, pieces, units=verdict.units)
             made.append(Made(file, verdict.checks, verdict))
             checks += verdict.checks
         return self._run(design, figures, made, checks, clock=clock)

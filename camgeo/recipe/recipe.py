@@ -134,6 +134,10 @@ class Order(Document):
         files = self.export.files
         return f"export.files[{files.index(request)}]" if request in files else "export.files"
 
+    def tolerance(self, request: FileRequest) -> float:
+        """Tolerance of a requested file, mm: its own, or else that of the export."""
+        return request.tolerance or self.export.tolerance
+
     def using(self, *options: str) -> Self:
         """The recipe itself; raises CallError for any option, as options need a recipe of one cam."""
         if options:
@@ -164,6 +168,21 @@ class ShaftOrder(Order):
     def input_words(self) -> str:
         """Sense of rotation of the shaft, in words."""
         return f"the shaft turns {'clockwise' if self.rotation == 'cw' else 'counter-clockwise'}"
+
+
+@dataclass(frozen=True)
+class SolidOrder(ShaftOrder):
+    """A recipe of a solid cam, computed as one that turns clockwise."""
+
+    @property
+    def mirrored(self) -> bool:
+        """Whether the cam in files is the mirror image, y -> -y, of the computed one."""
+        return self.rotation == "ccw"
+
+    @property
+    def sense(self) -> float:
+        """Factor of y and of polar angles from the computed cam to the one in files: -1 if mirrored, else 1."""
+        return -1.0 if self.mirrored else 1.0
 
 
 @dataclass(frozen=True)

@@ -169,7 +169,7 @@ class Stands:
     beside: Mask
 
     def among(self, walls: Mask) -> Stands:
-        """The same where the marked triangles (t,) are walls of all turns of a groove."""
+        """Copy in which the marked triangles (t,) are walls of all turns of a groove."""
         within = np.maximum.reduce(self.body.each(self.body.r)) >= self.gauge.inner
         return replace(self, across=self.across & (within | walls), beside=self.beside & walls & ~self.flank)
 

@@ -22,7 +22,7 @@ if TYPE_CHECKING:
 
 
 class Track:
-    """What leads a roller: `clearance` makes the roller of the upper flank larger, `distance` is that of two, mm."""
+    """A track: `clearance` enlarges the roller of its upper flank, `distance` is that of two rollers' axes, mm."""
 
     depth: float | None
     clearance: float = 0.0
@@ -34,7 +34,7 @@ class Track:
         return (-1, 1)
 
     def beside(self, side: Side) -> float:
-        """How far upwards, mm, the roller of a flank on its side is beside the middle of both: half their distance."""
+        """Height, mm, of the roller of the flank on a side above the middle between both rollers; 0 of one roller."""
         return -0.5 * side * self.distance
 
     def larger(self, side: Side) -> float:

@@ -193,7 +193,7 @@ class LedGauge(Gauge):
         return error / (self._upright * max(math.cos(min(self._leaning(self.inner)[0], UPRIGHT)), 1e-9))
 
     def by_line(self, error: float, radius: float) -> float:
-        """The same, mm, of a line that is off by an error on the cylinder of a radius, mm, and is all that holds it."""
+        """Travel, mm, by which an error, mm, of a line on a cylinder moves the roller at most, if no other holds it."""
         return error / (self._upright * max(math.cos(min(self._leaning(self._nearest(radius))[0], UPRIGHT)), 1e-9))
 
     def _nearest(self, radius: float) -> float:
@@ -442,7 +442,7 @@ class LedGauge(Gauge):
     def close_bounds(
         self, ends: Array, theta: Array, sizes: tuple[Array, Array, Array], least: Array
     ) -> tuple[Array, Array]:
-        """The same of parts whose ends (n, 2, 3) and their worst angles (n, 2) are known, with `sizes` as above."""
+        """Bounds as of `bounds`, of parts with ends (n, 2, 3) and worst angles (n, 2); `sizes` as it takes them."""
         across, up, along = sizes[0], np.abs(sizes[1]), sizes[2]
         way = ends[:, 1] - ends[:, 0]
         length = np.hypot(across, up)

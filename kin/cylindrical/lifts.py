@@ -108,7 +108,7 @@ class Lifts:
         return self._greatest(side, 2)
 
     def bends_near(self, side: int, reach: float) -> Array:
-        """The same over parts that are longer by `reach`, rad, at both ends; infinite where the velocity jumps."""
+        """Bounds (p,) as of `bends`, over parts longer by `reach`, rad, at both ends; infinite at jumps of velocity."""
         bins = self.bends(side)
         bins[self.part(self.corners)] = np.inf
         return widened(bins, reach)
@@ -138,7 +138,7 @@ def degrees_over(angle: float, turns: int) -> float:
 
 
 def widened(bins: Array, reach: float) -> Array:
-    """Greatest of the parts of a period (p,), BINS a turn, within `reach`, rad, of each."""
+    """Greatest value within `reach`, rad, of each part of a period, from values of the parts (p,), BINS a turn."""
     more = min(int(reach * (BINS / TURN)) + 1, BINS // 2 - 1)
     padded = np.concatenate([bins[-more:], bins, bins[:more]])
     return np.asarray(np.lib.stride_tricks.sliding_window_view(padded, 2 * more + 1).max(axis=1))

@@ -95,7 +95,7 @@ class Placing(NamedTuple):
 
 @dataclass(frozen=True, eq=False)
 class Ring:
-    """What the points round one radius of a flank do to the motion, at equal steps of the turn from 0.
+    """Error of the motion by the points round one radius of a flank, at equal steps of the turn from 0.
 
     error      (s,) of the position, mm or rad, by the smoothed errors; above 0 along the lift
     uncertain  (s,) k = 2, by what is left

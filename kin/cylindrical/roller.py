@@ -180,7 +180,7 @@ class Gauge:
         return error * math.hypot(1.0, self.lifts.steepest / self.inner)
 
     def by_line(self, error: float, radius: float) -> float:
-        """The same, mm, of a line that is off by an error on the cylinder of a radius, mm, and is all that holds it."""
+        """Travel, mm, by which an error, mm, of a line on a cylinder moves the roller at most, if no other holds it."""
         return error * math.hypot(1.0, self.lifts.steepest / radius)
 
     def line_bend(self, radius: float, climb: float) -> float:  # noqa: ARG002 - how a line climbs changes nothing here
@@ -308,7 +308,7 @@ class Gauge:
         sizes: tuple[Array, Array, Array],
         least: Array,
     ) -> tuple[Array, Array]:
-        """The same of parts whose ends (n, 2, 3) and their worst angles (n, 2) are known, with `sizes` as above."""
+        """Bounds as of `bounds`, of parts with ends (n, 2, 3) and worst angles (n, 2); `sizes` as it takes them."""
         return self.bounds(*sizes, least)
 
     def greatest(self, ends: tuple[Array, Array], shares: tuple[Array, Array], at: tuple[Array, Array, Array]) -> Array:

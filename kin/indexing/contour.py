@@ -47,7 +47,7 @@ class Peak(NamedTuple):
 
 @dataclass(frozen=True, eq=False)
 class Known:
-    """What is known of a body's corners, as far as they are asked for.
+    """Distances of a body's corners from the rollers; nan for corners that were not examined.
 
     worst     (v,) each at its worst angle
     distance  (v,) from what rollers sweep, mm

@@ -29,7 +29,7 @@ NEAR = 1e-9  # mm, to which it leads
 
 
 class Form(Protocol):
-    """What a judge asks of a barrel or a globoid; arrays (n,) unless said otherwise, mm and rad."""
+    """Protocol of a form of cam, barrel or globoid; arrays are (n,) unless said otherwise, mm and rad."""
 
     @property
     def radius(self) -> float:

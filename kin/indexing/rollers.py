@@ -73,7 +73,7 @@ class Worst(NamedTuple):
 
 @dataclass(frozen=True, eq=False)
 class Rollers:
-    """All rollers of an intent, looked at to a share of a tolerance, mm.
+    """All rollers of an intended turret; distances from them are found to a share of a tolerance, mm.
 
     Points have their heights over the turret's centre.
     """
@@ -98,12 +98,12 @@ class Rollers:
 
     @cached_property
     def reached(self) -> float:
-        """Excess, mm^2, above which it is not followed: there no axis comes within reach."""
+        """Excess, mm^2, up to which it is computed; above it no roller comes near."""
         return float((REACH**2 - 1.0) * self.radii.max() ** 2)
 
     @property
     def longest(self) -> float:
-        """Length of an edge, mm, above which it might hide an axis that is out of reach of its ends."""
+        """Greatest length of an edge, mm, at which no axis can reach it and yet be out of reach of both ends."""
         return math.sqrt(4.0 * self.reached)
 
     def bends(self, step: float) -> Array:

@@ -54,7 +54,7 @@ class _Job:
         return self.fits[key]
 
     def tolerance(self, request: FileRequest) -> float:
-        return request.tolerance or self.recipe.export.tolerance
+        return self.recipe.tolerance(request)
 
 
 def export(

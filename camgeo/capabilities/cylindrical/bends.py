@@ -28,7 +28,7 @@ SETTLE, WIDER = 8, 1e-12  # rounds by which places along a roller are enclosed, 
 
 
 class Bends(NamedTuple):
-    """Bounds over cells (n,), in mm and rad.
+    """Bounds of a flank's second derivatives over cells (n,), in mm and rad.
 
     across   of |p_ij . n|, (3, n): twice by theta, by theta and r, twice by r
     whole    of |p_ij|, (3, n)
@@ -54,7 +54,7 @@ class Bends(NamedTuple):
         return facets_width(self, h2, tolerance)
 
     def most(self, blocks: int) -> Bends:
-        """Bounds over so many blocks of cells together, (n / blocks,) of (blocks, n / blocks)."""
+        """Greatest bounds of corresponding cells in `blocks` equal blocks of them, (n / blocks,)."""
 
         def over(values: Array) -> Array:
             folded: Array = values.reshape(*values.shape[:-1], blocks, -1).max(axis=-2)
@@ -67,7 +67,7 @@ class Bends(NamedTuple):
         return Bends(*(part[..., index] for part in self))
 
     def joined(self, other: Bends) -> Bends:
-        """Bounds over both of two cells each."""
+        """Bounds over these cells and those of `other` of the same number together."""
         most = Bends(*(np.maximum(a, b) for a, b in zip(self, other, strict=True)))
         return most._replace(regular=np.minimum(self.regular, other.regular))
 
@@ -106,7 +106,10 @@ class _Second(NamedTuple):
 
 
 def bends(flank: Flank, theta: tuple[Array, Array], r: tuple[Array, Array]) -> Bends:
-    """Bounds over cells from theta[0] to theta[1], rad, without a break inside, and r[0] to r[1], mm, (n,) each."""
+    """Bounds of second derivatives over cells from theta[0] to theta[1], rad, and r[0] to r[1], mm, (n,) each.
+
+    No cell has a break of the motion inside.
+    """
     rows = Ball(*flank.law.enclosure(theta[0], theta[1], 3))
     return _explicit(flank, rows, r) if flank.radial else _implicit(flank, rows, Ball.between(*r))
 

@@ -38,7 +38,7 @@ MOST_COLOURS = 8
 
 
 def flat_scale(design: DrumDesign) -> float:
-    """Px of a mm on the development, whose width is the turn on the blank."""
+    """Scale of the development, px per mm: its width is one turn at the radius of the blank."""
     return FIELD / (TURN * design.recipe.radius)
 
 
@@ -122,7 +122,7 @@ def lost_from(design: DrumDesign, theta: Array) -> Array:
 
 
 def flat_axis(design: DrumDesign, flank: Flank, theta: Array) -> tuple[Array, Array]:
-    """Turn from the shaft angle to where a roller's axis meets the blank, a share of one, and its height, mm (n,)."""
+    """Place where a roller's axis meets the blank: polar angle from the shaft angle, turns, and height, mm, (n,)."""
     pose = flank.pose(theta)
     return np.arcsin(pose.y / design.recipe.radius) / TURN, pose.z
 

@@ -1,4 +1,4 @@
-"""Checks of a drum at which a figure fails that is on its limit: a length of 0 carries nothing."""
+"""Checks of a drum that fail at the value 0 too: a line of contact or a rib of no length carries nothing."""
 
 from __future__ import annotations
 

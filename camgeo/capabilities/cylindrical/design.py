@@ -92,7 +92,7 @@ class DrumDesign:
     def tips(self) -> dict[str, list[Tip]]:
         """Tips of the undercuts of each flank, none of a flank that is proved regular from floor to blank.
 
-        Raises CurveError for a flank of which neither is shown.
+        Raises CurveError where a flank is neither proved regular nor found undercut.
         """
         found: dict[str, list[Tip]] = {}
         for name, flank in self.flanks.items():
@@ -125,7 +125,7 @@ class DrumDesign:
         return next(iter(bore_of(self.recipe.part)), None)
 
     def error(self, field: str, problem: str, remedy: str = "") -> RecipeErrors:
-        """Error at a field of the recipe, or at the nearest one above it that is given, in the recipe's unit."""
+        """Error at a field of the recipe, or at its nearest parent that is given; lengths are in the recipe's unit."""
         return self.recipe.error(self.recipe.stated(field), in_recipe(self.recipe, problem), None, remedy)
 
 

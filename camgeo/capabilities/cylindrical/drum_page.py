@@ -33,10 +33,11 @@ if TYPE_CHECKING:
 
     from camgeo.capabilities.cylindrical.design import DrumDesign
     from camgeo.capabilities.cylindrical.shells import Shell
+    from camgeo.output.own_kind import Made
 
 
 def looks() -> tuple[str, str]:
-    """Return the rules of the charts, and the player that turns the drum."""
+    """CSS of the charts, and JavaScript of the player that turns the drum."""
     return asset("chart.css") + _asset("drum.css"), _asset("drum.js")
 
 
@@ -55,7 +56,7 @@ def drawn(design: DrumDesign) -> dict[str, Any]:
     return {**shown, "player": {"name": "playDrum", "data": _played(design, of, seen.digits)}}
 
 
-def script(design: DrumDesign) -> dict[str, Any]:
+def script(design: DrumDesign, _: Sequence[Made[Any]] = ()) -> dict[str, Any]:
     """All data of the page's script."""
     return {
         **drawn(design),

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Literal
 
 import numpy as np
 
-from camgeo.recipe.recipe import ShaftOrder
+from camgeo.recipe.recipe import SolidOrder
 from kin.numeric.angles import TURN
 from kin.numeric.records import dataclass, replace
 
@@ -18,7 +18,6 @@ if TYPE_CHECKING:
     from camgeo.capabilities.cylindrical.tracks import Track
     from camgeo.motions.motion import MotionSource
     from camgeo.part.part import Part
-    from camgeo.recipe.export import FileRequest
     from camgeo.recipe.figure_bounds import Bound
     from camgeo.recipe.materials import Material
     from kin.numeric.arrays import Array
@@ -67,7 +66,7 @@ class Roller:
 
 @dataclass(frozen=True)
 class Drive:
-    """Turns a minute, the load, N, and what touches; None where the recipe does not say.
+    """Speed of the drum, rpm, load, N, and materials of drum and roller; None where not given.
 
     The load is along the cam's axis, or on an arm at its roller, square to the arm.
     """
@@ -79,7 +78,7 @@ class Drive:
 
 
 @dataclass(frozen=True)
-class DrumRecipe(ShaftOrder):
+class DrumRecipe(SolidOrder):
     """A recipe of a cylindrical cam; lengths in mm, angles in rad.
 
     `radius` is the blank's; `guide` leads the roller's axis, or the middle between the rollers of a rib, over the lower
@@ -101,26 +100,12 @@ class DrumRecipe(ShaftOrder):
     turns: int = 1
     profile: float | None = None
 
-    __repr__ = ShaftOrder.__repr__
+    __repr__ = SolidOrder.__repr__
 
     @property
     def period(self) -> float:
         """Shaft angle, rad, after which the motion repeats."""
         return TURN * self.turns
-
-    @property
-    def mirrored(self) -> bool:
-        """Whether the drum that is made is the mirror image, y -> -y, of that which is computed."""
-        return self.rotation == "ccw"
-
-    @property
-    def sense(self) -> float:
-        """Factor of y, and of polar angles, of the drum that is made: -1 of one that is mirrored."""
-        return -1.0 if self.mirrored else 1.0
-
-    def tolerance(self, request: FileRequest) -> float:
-        """Tolerance of a requested file, mm: its own, or that of the export."""
-        return request.tolerance or self.export.tolerance
 
     @property
     def level(self) -> float:

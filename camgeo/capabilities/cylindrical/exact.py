@@ -28,7 +28,7 @@ def designed(recipe: DrumRecipe, clock: Clock) -> DrumDesign:
 
 
 def moved(recipe: DrumRecipe) -> DrumDesign:
-    """The cam of a recipe whose motion can be made, and whose flanks are not looked at; raises RecipeErrors."""
+    """The cam of a recipe, its flanks not yet checked; raises RecipeErrors where its motion cannot be made."""
     try:
         motion = recipe.motion.motion(recipe.period, "cam.motion", 1)
         law = motion.periodic("cam.motion", "rad" if recipe.swings else "mm")

@@ -295,7 +295,7 @@ def _loaded(design: DrumDesign, steep: tuple[float, float]) -> list[Figure]:
 
 
 def bears(design: DrumDesign) -> float | None:
-    """Pressure that both materials bear, N/mm^2; None where neither states one."""
+    """Permissible pressure of the contact, N/mm^2: the lesser of both materials; None where neither states one."""
     drive = design.recipe.drive
     return bearable(drive.material, drive.roller_material)
 

@@ -31,7 +31,7 @@ Line = tuple[int, bool]  # its last point, and whether metal is above it
 
 
 class Run(NamedTuple):
-    """Numbers of the points of a line, by rising angles; a `closed` one returns to its first. `under` metal or not."""
+    """A line: numbers of its points by rising angles, whether it is closed, and whether metal lies above it."""
 
     points: Indices
     closed: bool

@@ -204,9 +204,9 @@ class Flank:
         return found
 
     def pressure(self, theta: Array, rho: Array, at: Side = 1) -> Array:
-        """Pressure angle (n,), rad, at distances rho along the roller: between the force, seen along it, and its way.
+        """Pressure angle (n,), rad, between the contact force, seen along the roller, and the way of its axis.
 
-        It is above 0 where the cam drives a rise.
+        It is taken at distances rho along the roller, mm, and above 0 where the cam drives a rise.
         """
         return self.steepness(self.pose(theta, at), rho)
 

@@ -10,7 +10,7 @@ import numpy as np
 
 from camgeo.common.terminal import escaped
 from camgeo.motions.recognised import MOST_LEFT, STROKES_BEGIN, Recognised
-from kin.follower.recognised import dwells_of, recognised
+from kin.follower.recognised import WholeTurn, dwells_of, recognised
 from kin.follower.unknown import stretches
 from kin.numeric.angles import TURN
 from kin.numeric.feet import equal_steps
@@ -33,37 +33,6 @@ Flank = Literal["lower", "upper", "middle"]
 SPREAD = 3  # steps to both sides, over which a velocity is taken
 LONGER = 1.15  # times the longest gap, or the width, is a shoe whose length is not given
 ROUND = 0.25  # of the reading, by which round numbers may move the motion
-
-
-@dataclass(frozen=True, eq=False)
-class DrumMotion:
-    """Positions (n,), mm or rad, at equal steps of a turn; what is left of laws may have `spans` independent values."""
-
-    position: Array
-    sd: float
-    spans: int
-    span: float = TURN
-    closed: bool = True
-    zero_ends: bool = False
-
-    @property
-    def turn(self) -> Array:
-        """Positions (n,) over the turn."""
-        return self.position
-
-    @property
-    def shaft(self) -> Array:
-        """Shaft angles (n,), rad."""
-        return equal_steps(len(self.position))
-
-    @property
-    def last(self) -> float:
-        """Position at the end of the turn."""
-        return float(self.position[0])
-
-    def alike(self, most: int, /) -> tuple[int, ...]:
-        """All numbers of waves up to `most`."""
-        return tuple(range(1, most + 1))
 
 
 class Segments(NamedTuple):
@@ -199,8 +168,8 @@ class FollowedDrum:
         return recognised(self._motion, self.within, self.told)
 
     @property
-    def _motion(self) -> DrumMotion:
-        return DrumMotion(self.position, self.run.error / 3.0, len(self.position) // 2)
+    def _motion(self) -> WholeTurn:
+        return WholeTurn(self.position, self.run.error / 3.0)
 
     @cached_property
     def segments(self) -> Segments:

@@ -65,7 +65,7 @@ class Carriage:
         return np.zeros_like(lift)
 
     def intended(self) -> dict[str, Any]:
-        """Fields of it in kin's words."""
+        """Arguments of kin's `DrumFollower` for this guide, by their names."""
         return {"offset": self.offset}
 
 
@@ -133,7 +133,7 @@ class Arm:
         return np.asarray(self.side * (self.start + lift))
 
     def intended(self) -> dict[str, Any]:
-        """Fields of it in kin's words."""
+        """Arguments of kin's `DrumFollower` for this guide, by their names."""
         from kin.cylindrical import follower
 
         return {"arm": follower.Arm(self.length, self.y, self.z, self.side)}

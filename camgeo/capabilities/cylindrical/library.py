@@ -2,14 +2,14 @@
 
 from __future__ import annotations
 
-from functools import cached_property
+from functools import cached_property, partial
 from typing import TYPE_CHECKING
 
 import numpy as np
 
 from camgeo.api.check import Check, Figures
 from camgeo.api.log import stage_reporter
-from camgeo.api.own_kind import KindDesign
+from camgeo.api.own_kind import KindDesign, angles_of, foreseen_with, order_of
 from camgeo.capabilities.cylindrical.checks import LENGTH, RIB
 from camgeo.capabilities.cylindrical.checks_of import design_checks, limits_held
 from camgeo.capabilities.cylindrical.exact import designed
@@ -17,12 +17,11 @@ from camgeo.capabilities.cylindrical.figures import CONTACT_PRESSURE, figures_of
 from camgeo.capabilities.cylindrical.gentler import gentler
 from camgeo.capabilities.cylindrical.sheet import points_of
 from camgeo.checks.declared import FORM_CLOSURE, LIMIT, WATERTIGHT
-from camgeo.common.arguments import numbers_of, short_repr, whole_of
+from camgeo.common.arguments import numbers_of
 from camgeo.common.clock import Clock
 from camgeo.common.errors import CallError
 from camgeo.common.rounding import downward, upward
 from camgeo.recipe.figures import LEAST_WALL, PRESSURE_ANGLE
-from camgeo.synthesis.expected_checks import Foreseen
 from kin.numeric.records import dataclass, field
 
 if TYPE_CHECKING:
@@ -32,9 +31,9 @@ if TYPE_CHECKING:
     from camgeo.capabilities.cylindrical.drum_recipe import DrumRecipe
     from camgeo.checks.declaration import Entry
     from camgeo.recipe.export import FileRequest
+    from camgeo.synthesis.expected_checks import Foreseen
     from kin.numeric.arrays import Array
 
-MOST_DERIVATIVE = 6  # of the motion by the shaft angle
 FIELDS = {
     PRESSURE_ANGLE: "cam.motion",
     LENGTH: "cam.follower",
@@ -68,11 +67,7 @@ class CylindricalCam(KindDesign):
 
         Raises CallError for another order and for angles that are not finite; TypeError for what is no number.
         """
-        places, order = numbers_of("theta", theta), whole_of("derivative", derivative)
-        if order not in range(MOST_DERIVATIVE + 1):
-            raise CallError(f"a derivative is one of order 0 to {MOST_DERIVATIVE}, not {short_repr(order)}")
-        if not np.isfinite(places).all():
-            raise CallError("shaft angles are finite")
+        places, order = angles_of(theta), order_of(derivative)
         return np.asarray(self._design.law.derivatives(places.ravel(), order)[order].reshape(places.shape))
 
     def flank(self, theta: ArrayLike, radius: float, *, upper: bool = False) -> Array:
@@ -128,16 +123,8 @@ OF_SOLIDS = ("volume", "floor", "blank", "ends")
 
 def foreseen(recipe: DrumRecipe) -> tuple[Foreseen, ...]:
     """Checks that the report is sure to have."""
-    expected = [Foreseen(PRESSURE_ANGLE), Foreseen(LENGTH)]
-    if RIB in recipe.track.figures:
-        expected.append(Foreseen(RIB))
-    expected.append(Foreseen(LEAST_WALL))
-    expected += [Foreseen(f"{LIMIT}{bound.figure}") for bound in recipe.limits]
-    for request in recipe.export.files:
-        if request.format.contour:
-            (name,) = recipe.filenames(request)
-            expected += [Foreseen(each, name) for each in _of_file(recipe, request)]
-    return tuple(dict.fromkeys(expected))
+    expected = [PRESSURE_ANGLE, LENGTH, *([RIB] if RIB in recipe.track.figures else []), LEAST_WALL]
+    return foreseen_with(expected, recipe, recipe.limits, partial(_of_file, recipe))
 
 
 def _of_file(recipe: DrumRecipe, request: FileRequest) -> list[str]:

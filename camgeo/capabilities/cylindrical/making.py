@@ -17,7 +17,7 @@ from camgeo.fit.bound import Bound
 from camgeo.formats.glb import COLOURS, Actor, steady_turn, write_glb
 from camgeo.measures.file_result import FileResult
 from camgeo.output.extension import MAKING, numbers_of
-from camgeo.output.own_kind import Made
+from camgeo.output.own_kind import Made, judged_made
 from camgeo.output.refusals import refusals
 
 if TYPE_CHECKING:
@@ -30,7 +30,7 @@ if TYPE_CHECKING:
 
 
 def foresee(design: DrumDesign, request: FileRequest) -> None:
-    """Raise MissingExtraError where a package is missing that makes a file, RecipeErrors for a drum that it lacks."""
+    """Raise MissingExtraError where a package is missing that makes a file, RecipeErrors where it cannot be made."""
     if request.kind == "dxf":
         demand_package("ezdxf", "a DXF file needs ezdxf")
     if request.kind == "step":
@@ -45,7 +45,7 @@ def foresee(design: DrumDesign, request: FileRequest) -> None:
 
 
 def _demand_judged(design: DrumDesign, request: FileRequest) -> None:
-    """Raise RecipeErrors for a program whose tolerance is finer than what it leaves is judged to."""
+    """Raise RecipeErrors for a program with a tolerance below the accuracy of its verdict."""
     from kin.cylindrical.program import finest_told
 
     recipe = design.recipe
@@ -75,16 +75,6 @@ def make(design: DrumDesign, clock: Clock, request: FileRequest, path: Path) -> 
         return maker(design, clock, request, path)
 
 
-def _judged(
-    design: DrumDesign, clock: Clock, request: FileRequest, path: Path, fit: tuple[int | None, Bound]
-) -> Made[DrumVerdict]:
-    """A written file with kin's verdict on it; `fit` is number of points or patches, None for a mesh, and bound."""
-    tolerance = design.recipe.tolerance(request)
-    with clock.stage(f"judge {request.kind}"):
-        verdict = judged_file(design, path, request, tolerance)
-    return Made(FileResult(path, request, tolerance, *fit, units=verdict.units), verdict.checks, verdict)
-
-
 def _mesh(design: DrumDesign, clock: Clock, request: FileRequest, path: Path) -> Made[DrumVerdict]:
     recipe, mm, write = design.recipe, UNIT_MM[request.unit_for(design.recipe.units)], MAKING[request.kind].write
     if write is None:
@@ -93,7 +83,7 @@ def _mesh(design: DrumDesign, clock: Clock, request: FileRequest, path: Path) ->
         mesh, facts = drum_mesh(design, design.recipe.tolerance(request), numbers_of(request.kind, mm))
     with clock.stage(f"write {request.kind}"):
         write(path, [Item("drum", mesh)], recipe.name, mm, recipe.about)
-    return _judged(design, clock, request, path, (None, facts.bound))
+    return judged_made(judged_file, design, path, request, clock=clock, fit=(None, facts.bound))
 
 
 def _surfaces(design: DrumDesign, clock: Clock, request: FileRequest, path: Path) -> Made[DrumVerdict]:
@@ -105,7 +95,7 @@ def _surfaces(design: DrumDesign, clock: Clock, request: FileRequest, path: Path
         solid = drum_solid(design, design.recipe.tolerance(request))
     with clock.stage("write step"):
         write_shape(path, solid.shape, units=units, name=recipe.name, about=recipe.about or "cylindrical cam")
-    return _judged(design, clock, request, path, (solid.pieces, Bound(solid.off, solid.off)))
+    return judged_made(judged_file, design, path, request, clock=clock, fit=(solid.pieces, Bound(solid.off, solid.off)))
 
 
 def _view(design: DrumDesign, clock: Clock, request: FileRequest, path: Path) -> Made[DrumVerdict]:
@@ -124,7 +114,7 @@ def _development(design: DrumDesign, clock: Clock, request: FileRequest, path: P
     mm = UNIT_MM[request.unit_for(design.recipe.units)]
     with clock.stage("write dxf"):
         fit = write_development(design, request, path, design.recipe.tolerance(request), mm)
-    return _judged(design, clock, request, path, fit)
+    return judged_made(judged_file, design, path, request, clock=clock, fit=fit)
 
 
 def _program(design: DrumDesign, clock: Clock, request: FileRequest, path: Path) -> Made[DrumVerdict]:
@@ -134,7 +124,7 @@ def _program(design: DrumDesign, clock: Clock, request: FileRequest, path: Path)
         fit = write_program(
             design, request, path, design.recipe.tolerance(request), UNIT_MM[request.unit_for(design.recipe.units)]
         )
-    return _judged(design, clock, request, path, fit)
+    return judged_made(judged_file, design, path, request, clock=clock, fit=fit)
 
 
 _MAKERS = {"dxf": _development, "glb": _view, "step": _surfaces}

@@ -28,7 +28,7 @@ if TYPE_CHECKING:
     from camgeo.files.layer_outline import LayerOutline
     from camgeo.files.mesh import Mesh
     from camgeo.measures.placed import Figure
-    from camgeo.output.own_kind import Made
+    from camgeo.output.own_kind import Made, Page
     from camgeo.report.page.scene import Scene
     from kin.cylindrical.verdict import DrumVerdict
     from kin.numeric.arrays import Array
@@ -57,38 +57,16 @@ def _maker(design: DrumDesign, clock: Clock) -> Callable[[FileRequest, Path], Ma
     return partial(make, design, clock)
 
 
-def _pieces(verdict: DrumVerdict) -> int:
-    return sum(flank.pieces or 0 for flank in verdict.flanks)
-
-
 def _seen(design: DrumDesign, step: int) -> Scene:
     from camgeo.capabilities.cylindrical.turning import scene
 
     return scene(design, step)
 
 
-def _picture(design: DrumDesign) -> dict[str, Any]:
-    from camgeo.capabilities.cylindrical.drum_page import drawn
+def _page() -> Page[DrumDesign]:
+    from camgeo.capabilities.cylindrical import drum_page
 
-    return drawn(design)
-
-
-def _script(design: DrumDesign, _: Sequence[Made[DrumVerdict]]) -> dict[str, Any]:
-    from camgeo.capabilities.cylindrical.drum_page import script
-
-    return script(design)
-
-
-def _panels(design: DrumDesign, report: dict[str, Any]) -> str:
-    from camgeo.capabilities.cylindrical.drum_page import panels
-
-    return panels(design, report)
-
-
-def _looks() -> tuple[str, str]:
-    from camgeo.capabilities.cylindrical.drum_page import looks
-
-    return looks()
+    return drum_page
 
 
 def _drawings(design: DrumDesign, tolerance: float) -> list[tuple[str, Sequence[LayerOutline | Array]]]:
@@ -116,12 +94,8 @@ DRUMS = OwnKind(
     foresee=foresee,
     maker=_maker,
     judged=judged_file,
-    pieces=_pieces,
     seen=_seen,
-    picture=_picture,
-    script=_script,
-    panels=_panels,
-    looks=_looks,
+    page_of=_page,
     motion=stated_motion,
     drawings=_drawings,
     mesh=_mesh,

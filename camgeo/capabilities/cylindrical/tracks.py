@@ -64,7 +64,7 @@ class Track:
         return {name: flank for name, flank in both.items() if name in self.rising}
 
     def intended(self) -> intent.Track:
-        """The track in kin's words."""
+        """Track of the intended drum, by which kin judges files."""
         raise NotImplementedError
 
 
@@ -97,7 +97,7 @@ class Groove(Track):
         return {"lower": lower, "upper": replace(lower, side=1, radius=lower.radius + self.clearance)}
 
     def intended(self) -> intent.Track:
-        """The groove in kin's words."""
+        """Kin's groove."""
         from kin.cylindrical import intent
 
         return intent.Groove(self.depth, self.clearance)
@@ -131,7 +131,7 @@ class Rib(Track):
         }
 
     def intended(self) -> intent.Track:
-        """The rib in kin's words."""
+        """Kin's rib."""
         from kin.cylindrical import intent
 
         return intent.Rib(self.depth, self.distance)
@@ -151,7 +151,7 @@ class End(Track):
         return ("lower",) if self.facing == "top" else ("upper",)
 
     def intended(self) -> intent.Track:
-        """The end face in kin's words."""
+        """Kin's end face."""
         from kin.cylindrical import intent
 
         return intent.End(self.facing, self.depth)

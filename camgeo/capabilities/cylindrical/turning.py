@@ -30,7 +30,7 @@ ARC = 12  # chords of an arc of contact
 def scene(design: DrumDesign, step: int = 0, of: list[Shell] | None = None) -> Scene:
     """The drum as it stands at a step of the turn, and its follower over the turn, in the recipe's unit.
 
-    `of` are its shells, by default as they are made here.
+    `of` are the shells of the drum, which are computed by default.
     """
     recipe = design.recipe
     theta = np.linspace(0.0, recipe.period, STEPS + 1)

@@ -27,7 +27,7 @@ if TYPE_CHECKING:
 
 
 def intended(design: DrumDesign, mm: float = 1.0) -> intent.DrumIntent:
-    """The drum in kin's words; `mm` is the unit of a drawing."""
+    """Intended drum by which kin judges files; `mm` is the length of a drawing's unit, mm."""
     recipe, roller = design.recipe, design.recipe.roller
     led: dict[str, Any] = recipe.guide.intended()
     if roller.taper:
@@ -58,8 +58,8 @@ def judged_file(
 ) -> DrumVerdict:
     """Kin's verdict on a file; `units` is mm in the unit of a file that states none.
 
-    A drawing that the recipe does not ask for is held against the lines that the recipe's developments have, or those
-    of one by default.
+    A drawing that the recipe does not request is compared with all developments that it does request, or else with the
+    default one.
     """
     recipe = design.recipe
     limits = intent.Limits(tolerance, recipe.verify.motion_error)

@@ -36,7 +36,7 @@ class Second(NamedTuple):
 
 
 class Bends(NamedTuple):
-    """Bounds over cells (n,), in mm and rad.
+    """Bounds of a flank's second derivatives over cells (n,), in mm and rad.
 
     across   of |p_ij . n|, (3, n): twice by theta, by theta and rho, twice by rho
     whole    of |p_ij|, (3, n)
@@ -56,7 +56,7 @@ class Bends(NamedTuple):
         return facets_width(self, h2, tolerance)
 
     def most(self, blocks: int) -> Bends:
-        """Bounds over so many blocks of cells together, (n / blocks,) of (blocks, n / blocks)."""
+        """Greatest bounds of corresponding cells in `blocks` equal blocks of them, (n / blocks,)."""
 
         def over(values: Array) -> Array:
             folded: Array = values.reshape(*values.shape[:-1], blocks, -1).max(axis=-2)
@@ -100,7 +100,7 @@ def second_of(flank: Flank, pose: Pose, rho: Number, touch: Touch) -> Second:
 
 
 def bends(flank: Flank, theta: tuple[Array, Array], rho: tuple[Array, Array]) -> Bends:
-    """Bounds over cells from theta[0] to theta[1], rad, and rho[0] to rho[1], mm, (n,) each.
+    """Bounds of second derivatives over cells from theta[0] to theta[1], rad, and rho[0] to rho[1], mm, (n,) each.
 
     Within a cell the first derivatives of the flank do not jump.
     """

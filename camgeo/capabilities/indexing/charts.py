@@ -23,14 +23,14 @@ EVERY = 4  # of the points of a flank that are drawn
 
 
 def scale(design: IndexDesign) -> float:
-    """Px of a mm on the development, whose width is the turn on the blank."""
+    """Scale of the development, px per mm: its width is one turn at the radius of the blank."""
     return FIELD / (TURN * design.recipe.form.blank)
 
 
 def rollers(design: IndexDesign, theta: Array) -> list[tuple[Array, Array]]:
-    """Turn from the shaft angles (n,), rad, to where axes meet the blank, a share of one, and their heights, mm.
+    """Places where the rollers' axes meet the blank, at shaft angles (n,), rad: a pair for each roller near it.
 
-    There is a pair for each roller that may touch the cam within a turn.
+    A pair has the polar angle from the shaft angle, in turns, and the height, mm, (n,) each.
     """
     found, flank = [], design.flanks["lower"]
     for turn in design.turns:

@@ -57,12 +57,12 @@ class IndexDesign:
 
     @property
     def largest(self) -> float:
-        """Radius of the roller of that flank, mm, whose roller is larger."""
+        """The larger radius of a roller, mm, of those of both flanks."""
         return self.recipe.roller.radius + max(self.recipe.clearance, 0.0)
 
     @property
     def bearing(self) -> tuple[float, float]:
-        """Places along a roller, mm, between which it may touch the metal: where it bears, within the blank's reach."""
+        """Least and greatest place along a roller, mm, at which it bears and may touch metal."""
         roller, (low, high) = self.recipe.roller, self.recipe.form.reach(self.largest)
         return max(roller.inner, low), min(roller.outer, high)
 
@@ -78,7 +78,7 @@ class IndexDesign:
 
     @cached_property
     def turns(self) -> range:
-        """Whole turns after which a roller may touch the cam, of the roller that stands at the start after none."""
+        """Whole turns of the cam after which the roller that is at `start` at turn 0 may touch it."""
         (low, high), (least, most) = self.spanned, self.motion.range
         first = math.ceil((low - self.recipe.start - most) / self.recipe.advance - ROUNDING)
         return range(first, math.floor((high - self.recipe.start - least) / self.recipe.advance + ROUNDING) + 1)
@@ -89,7 +89,7 @@ class IndexDesign:
         return next(iter(bore_of(self.recipe.part)), None)
 
     def error(self, field: str, problem: str, remedy: str = "") -> RecipeErrors:
-        """Error at a field of the recipe, or at the nearest one above it that is given, in the recipe's unit."""
+        """Error at a field of the recipe, or at its nearest parent that is given; lengths are in the recipe's unit."""
         return self.recipe.error(self.recipe.stated(field), in_recipe(self.recipe, problem), None, remedy)
 
 

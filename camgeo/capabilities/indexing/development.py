@@ -49,7 +49,7 @@ MARKS = "TURN"  # end of the name of the layer whose marks enclose a turn
 
 
 class Line(NamedTuple):
-    """A line of a development: where it is, its pieces (n, 2), mm, and the bound, mm, of their distance from it."""
+    """A line of a development: its layer and radius, its pieces (n, 2), mm, and the bound of their error, mm."""
 
     of: Developed
     pieces: list[Array]

@@ -27,7 +27,7 @@ class Engaged:
 
     @cached_property
     def angles(self) -> Array:
-        """Shaft angles (n, j), rad, at which the roller that stands at the start at 0 is where each roller is."""
+        """Shaft angles (n, j), rad, at which the roller that is at `start` at 0 takes the place of each roller."""
         return self.theta[:, None] + TURN * np.array(self.design.turns)
 
     @cached_property
@@ -79,19 +79,19 @@ class Engaged:
         return np.where(self.bears, np.abs(self.angle(rho)), np.nan)
 
     def lever(self, rho: Array) -> Array:
-        """Moments (n, j), mm, about the turret's axis of a force of 1 along the normal, at places along the rollers."""
+        """Lever arms (n, j), mm, of the contact force about the turret's axis, at places along the rollers."""
         return np.asarray(self.design.recipe.form.lever(rho) * np.cos(self.angle(rho)))
 
     @cached_property
     def levers(self) -> Array:
-        """These moments (n, j), mm, at the middle of each line."""
+        """Lever arms (n, j), mm, of the contact force about the turret's axis, in the middle of each line."""
         return self.lever(self.middle)
 
     @cached_property
     def best(self) -> tuple[Array, Array]:
-        """Indices (n,) of the roller that a torque loads least by the mm of its line, and those least loads, 1/mm^2.
+        """Indices (n,) of the roller with the least line load under a torque, and this load by that torque, 1/mm^2.
 
-        The load is infinite where no roller is borne.
+        The load is infinite where the flank bears on no roller.
         """
         with np.errstate(divide="ignore"):
             load = np.where(self.bears, 1.0 / (self.levers * self.length), np.inf)

@@ -80,7 +80,7 @@ class Touch(NamedTuple):
 class Flank:
     """The flank of a roller of a radius, mm, with the metal below it (`side` -1) or above it (1).
 
-    `law` is S, rad, over the shaft angle, rad, on and on; the roller stands at `start`, rad, where S is 0. Its path is
+    `law` is S, rad, over any shaft angle, rad; the roller stands at `start`, rad, where S is 0. Its path is
     endless: other rollers of the turret are where it is whole turns of the cam further on.
     """
 
@@ -178,9 +178,9 @@ class Flank:
         return rho
 
     def pressure(self, theta: Array, rho: Array, at: Side = 1) -> Array:
-        """Pressure angle (n,), rad, at distances rho along the roller: between the force, seen along it, and its way.
+        """Pressure angle (n,), rad, between the contact force, seen along the roller, and the way of its axis.
 
-        It is above 0 where the cam drives the turret on.
+        It is taken at distances rho along the roller, mm, and above 0 where the cam drives the turret on.
         """
         pose = self.pose(theta, at)
         speed = self.form.speed(pose, rho)

@@ -95,7 +95,7 @@ class Pose(NamedTuple):
 
 @dataclass(frozen=True)
 class Barrel:
-    """A barrel: radius of the blank and depth of the track, pose's axis, pitch radius and height; its length, mm.
+    """A barrel, mm: radius of the blank, depth of the track, offset, pitch radius and height of the turret; length.
 
     `side` is 1 where the barrel's surface runs from the turret's axis to the contact (trailing), -1 where it runs the
     other way (leading).

@@ -24,12 +24,15 @@ from camgeo.report.plot import Plot, Series
 from kin.numeric.angles import TURN
 
 if TYPE_CHECKING:
+    from collections.abc import Sequence
+
     from camgeo.capabilities.indexing.design import IndexDesign
     from camgeo.capabilities.indexing.ribs import Layer
+    from camgeo.output.own_kind import Made
 
 
 def looks() -> tuple[str, str]:
-    """Return the rules of the chart, and the player that turns the cam."""
+    """CSS of the chart, and JavaScript of the player that turns the cam."""
     return asset("chart.css") + _asset("index.css"), _asset("index.js")
 
 
@@ -43,7 +46,7 @@ def drawn(design: IndexDesign) -> dict[str, Any]:
     return {**shown, "player": {"name": "playIndexer", "data": _played(design, of, seen.digits)}}
 
 
-def script(design: IndexDesign) -> dict[str, Any]:
+def script(design: IndexDesign, _: Sequence[Made[Any]] = ()) -> dict[str, Any]:
     """All data of the page's script."""
     rests = [[math.degrees(rest.begin), math.degrees(rest.end - rest.begin), "dwell"] for rest in design.motion.rests]
     plots = [plotted(plot) for plot in _plots(design)]

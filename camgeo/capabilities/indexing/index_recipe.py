@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from camgeo.recipe.recipe import ShaftOrder
+from camgeo.recipe.recipe import SolidOrder
 from kin.numeric.angles import TURN
 from kin.numeric.records import dataclass
 
@@ -15,14 +15,13 @@ if TYPE_CHECKING:
     from camgeo.capabilities.indexing.turrets import Roller, Turret
     from camgeo.motions.motion import MotionSource
     from camgeo.part.part import Part
-    from camgeo.recipe.export import FileRequest
     from camgeo.recipe.figure_bounds import Bound
     from camgeo.recipe.materials import Material
 
 
 @dataclass(frozen=True)
 class Drive:
-    """Turns of the cam a minute, the load on the turret, N m, and what touches; None where the recipe does not say.
+    """Speed of the cam, rpm, load on the turret, N m, and materials of cam and rollers; None where not given.
 
     `inertia`, kg m^2, is that of the turret and of all that it carries, about its own axis.
     """
@@ -35,7 +34,7 @@ class Drive:
 
 
 @dataclass(frozen=True)
-class IndexRecipe(ShaftOrder):
+class IndexRecipe(SolidOrder):
     """A recipe of an indexing cam; lengths in mm, angles in rad.
 
     `turret` leads `stops` equal rollers about the blank. One of them stands at the angle `start` where the motion
@@ -55,7 +54,7 @@ class IndexRecipe(ShaftOrder):
     drive: Drive = Drive()
     limits: tuple[Bound, ...] = ()
 
-    __repr__ = ShaftOrder.__repr__
+    __repr__ = SolidOrder.__repr__
 
     @property
     def form(self) -> Barrel | Globoid:
@@ -66,20 +65,6 @@ class IndexRecipe(ShaftOrder):
     def advance(self) -> float:
         """Angle of the turret, rad, between one stop and the next: that between neighbouring rollers."""
         return TURN / self.stops
-
-    @property
-    def mirrored(self) -> bool:
-        """Whether the cam that is made is the mirror image, y -> -y, of that which is computed."""
-        return self.rotation == "ccw"
-
-    @property
-    def sense(self) -> float:
-        """Factor of y, and of polar angles, of the cam that is made: -1 of one that is mirrored."""
-        return -1.0 if self.mirrored else 1.0
-
-    def tolerance(self, request: FileRequest) -> float:
-        """Tolerance of a requested file, mm: its own, or that of the export."""
-        return request.tolerance or self.export.tolerance
 
     @property
     def length(self) -> float:

@@ -1,4 +1,4 @@
-"""The motion of a turret over any number of turns of its cam: what it does in one turn, over and over, further on."""
+"""The motion of a turret over any number of turns of its cam: that of one turn, each time one pitch further."""
 
 from __future__ import annotations
 

@@ -2,26 +2,24 @@
 
 from __future__ import annotations
 
-from functools import cached_property
+from functools import cached_property, partial
 from typing import TYPE_CHECKING
 
 import numpy as np
 
 from camgeo.api.check import Check, Figures
 from camgeo.api.log import stage_reporter
-from camgeo.api.own_kind import KindDesign
+from camgeo.api.own_kind import KindDesign, angles_of, foreseen_with, order_of
 from camgeo.capabilities.indexing.checks_of import design_checks, limits_held
 from camgeo.capabilities.indexing.exact import designed
 from camgeo.capabilities.indexing.figures import figures_of
 from camgeo.capabilities.indexing.keys import LENGTH, RIB
 from camgeo.checks.declared import FORM_CLOSURE, LIMIT, WATERTIGHT
-from camgeo.common.arguments import numbers_of, short_repr, whole_of
 from camgeo.common.clock import Clock
 from camgeo.common.errors import CallError
 from camgeo.common.rounding import downward
 from camgeo.curve.curve import CurveError
 from camgeo.recipe.figures import LEAST_WALL, PRESSURE_ANGLE
-from camgeo.synthesis.expected_checks import Foreseen
 from kin.numeric.records import dataclass, field
 
 if TYPE_CHECKING:
@@ -31,16 +29,16 @@ if TYPE_CHECKING:
     from camgeo.capabilities.indexing.index_recipe import IndexRecipe
     from camgeo.checks.declaration import Entry
     from camgeo.recipe.export import FileRequest
+    from camgeo.synthesis.expected_checks import Foreseen
     from kin.numeric.arrays import Array
 
-MOST_DERIVATIVE = 6  # of the motion by the shaft angle
 FIELDS = {PRESSURE_ANGLE: "cam.motion", LENGTH: "cam.turret", RIB: "cam.turret.roller", LEAST_WALL: "part"}
 """Keys that a check of the exact cam names where it fails."""
 
 
 @dataclass(frozen=True, eq=False)
 class IndexingCam(KindDesign):
-    """The exact cam that advances a turret; no file is made. Checks and figures are in the recipe's units."""
+    """The exact cam of an indexing drive; no file is made. Checks and figures are in the recipe's units."""
 
     recipe: IndexRecipe
     _design: IndexDesign = field(repr=False)
@@ -63,11 +61,7 @@ class IndexingCam(KindDesign):
         After each turn it is further on by the pitch of the rollers. Derivatives are known up to the sixth. Raises
         CallError for another order and for angles that are not finite; TypeError for what is no number.
         """
-        places, order = numbers_of("theta", theta), whole_of("derivative", derivative)
-        if order not in range(MOST_DERIVATIVE + 1):
-            raise CallError(f"a derivative is one of order 0 to {MOST_DERIVATIVE}, not {short_repr(order)}")
-        if not np.isfinite(places).all():
-            raise CallError("shaft angles are finite")
+        places, order = angles_of(theta), order_of(derivative)
         return np.asarray(self._design.law.derivatives(places.ravel(), order)[order].reshape(places.shape))
 
     def flank(self, theta: ArrayLike, layer: float, *, upper: bool = False) -> Array:
@@ -81,9 +75,7 @@ class IndexingCam(KindDesign):
         recipe, (low, high) = self.recipe, self.recipe.layers
         if not low <= layer <= high:
             raise CallError(f"flanks reach from {low:.9g} to {high:.9g} mm")
-        places = numbers_of("theta", theta).ravel()
-        if not np.isfinite(places).all():
-            raise CallError("shaft angles are finite")
+        places = angles_of(theta).ravel()
         try:
             contact = self._design.flanks["upper" if upper else "lower"].on(places, float(layer))
         except CurveError as error:
@@ -123,13 +115,7 @@ OF_SOLIDS = ("volume", "floor", "blank", "ends")
 
 def foreseen(recipe: IndexRecipe) -> tuple[Foreseen, ...]:
     """Checks that the report is sure to have."""
-    expected = [Foreseen(name) for name in (PRESSURE_ANGLE, LENGTH, RIB, LEAST_WALL)]
-    expected += [Foreseen(f"{LIMIT}{bound.figure}") for bound in recipe.limits]
-    for request in recipe.export.files:
-        if request.format.contour:
-            (name,) = recipe.filenames(request)
-            expected += [Foreseen(each, name) for each in _of_file(recipe, request)]
-    return tuple(dict.fromkeys(expected))
+    return foreseen_with((PRESSURE_ANGLE, LENGTH, RIB, LEAST_WALL), recipe, recipe.limits, partial(_of_file, recipe))
 
 
 def _of_file(recipe: IndexRecipe, request: FileRequest) -> list[str]:

@@ -14,7 +14,7 @@ from camgeo.files.mesh import Item
 from camgeo.formats.glb import COLOURS, Actor, steady_turn, write_glb
 from camgeo.measures.file_result import FileResult
 from camgeo.output.extension import MAKING, numbers_of
-from camgeo.output.own_kind import Made
+from camgeo.output.own_kind import Made, judged_made
 from camgeo.output.refusals import refusals
 
 if TYPE_CHECKING:
@@ -22,7 +22,6 @@ if TYPE_CHECKING:
 
     from camgeo.capabilities.indexing.design import IndexDesign
     from camgeo.common.clock import Clock
-    from camgeo.fit.bound import Bound
     from camgeo.recipe.export import FileRequest
     from kin.indexing.verdict import IndexVerdict
 
@@ -50,16 +49,6 @@ def make(design: IndexDesign, clock: Clock, request: FileRequest, path: Path) ->
         return _MAKERS.get(request.kind, _mesh)(design, clock, request, path)
 
 
-def _judged(
-    design: IndexDesign, clock: Clock, request: FileRequest, path: Path, fit: tuple[int | None, Bound]
-) -> Made[IndexVerdict]:
-    """A written file with kin's verdict on it; `fit` is number of points, None for a mesh, and bound."""
-    tolerance = design.recipe.tolerance(request)
-    with clock.stage(f"judge {request.kind}"):
-        verdict = judged_file(design, path, request, tolerance)
-    return Made(FileResult(path, request, tolerance, *fit, units=verdict.units), verdict.checks, verdict)
-
-
 def _mesh(design: IndexDesign, clock: Clock, request: FileRequest, path: Path) -> Made[IndexVerdict]:
     recipe, mm, write = design.recipe, UNIT_MM[request.unit_for(design.recipe.units)], MAKING[request.kind].write
     if write is None:
@@ -68,7 +57,7 @@ def _mesh(design: IndexDesign, clock: Clock, request: FileRequest, path: Path) -
         mesh, facts = index_mesh(design, recipe.tolerance(request), numbers_of(request.kind, mm))
     with clock.stage(f"write {request.kind}"):
         write(path, [Item("cam", mesh)], recipe.name, mm, recipe.about)
-    return _judged(design, clock, request, path, (None, facts.bound))
+    return judged_made(judged_file, design, path, request, clock=clock, fit=(None, facts.bound))
 
 
 def _view(design: IndexDesign, clock: Clock, request: FileRequest, path: Path) -> Made[IndexVerdict]:
@@ -89,7 +78,7 @@ def _development(design: IndexDesign, clock: Clock, request: FileRequest, path: 
     mm = UNIT_MM[request.unit_for(design.recipe.units)]
     with clock.stage("write dxf"):
         fit = write_development(design, request, path, design.recipe.tolerance(request), mm)
-    return _judged(design, clock, request, path, fit)
+    return judged_made(judged_file, design, path, request, clock=clock, fit=fit)
 
 
 _MAKERS = {"dxf": _development, "glb": _view}

@@ -28,7 +28,7 @@ if TYPE_CHECKING:
     from camgeo.files.layer_outline import LayerOutline
     from camgeo.files.mesh import Mesh
     from camgeo.measures.placed import Figure
-    from camgeo.output.own_kind import Made
+    from camgeo.output.own_kind import Made, Page
     from camgeo.report.page.scene import Scene
     from kin.indexing.verdict import IndexVerdict
     from kin.numeric.arrays import Array
@@ -57,38 +57,16 @@ def _maker(design: IndexDesign, clock: Clock) -> Callable[[FileRequest, Path], M
     return partial(make, design, clock)
 
 
-def _pieces(verdict: IndexVerdict) -> int:
-    return sum(flank.pieces or 0 for flank in verdict.flanks)
-
-
 def _seen(design: IndexDesign, step: int) -> Scene:
     from camgeo.capabilities.indexing.turning import scene
 
     return scene(design, step)
 
 
-def _picture(design: IndexDesign) -> dict[str, Any]:
-    from camgeo.capabilities.indexing.index_page import drawn
+def _page() -> Page[IndexDesign]:
+    from camgeo.capabilities.indexing import index_page
 
-    return drawn(design)
-
-
-def _script(design: IndexDesign, _: Sequence[Made[IndexVerdict]]) -> dict[str, Any]:
-    from camgeo.capabilities.indexing.index_page import script
-
-    return script(design)
-
-
-def _panels(design: IndexDesign, report: dict[str, Any]) -> str:
-    from camgeo.capabilities.indexing.index_page import panels
-
-    return panels(design, report)
-
-
-def _looks() -> tuple[str, str]:
-    from camgeo.capabilities.indexing.index_page import looks
-
-    return looks()
+    return index_page
 
 
 def _drawings(design: IndexDesign, tolerance: float) -> list[tuple[str, Sequence[LayerOutline | Array]]]:
@@ -118,12 +96,8 @@ INDEXERS = OwnKind(
     foresee=foresee,
     maker=_maker,
     judged=judged_file,
-    pieces=_pieces,
     seen=_seen,
-    picture=_picture,
-    script=_script,
-    panels=_panels,
-    looks=_looks,
+    page_of=_page,
     motion=stated_motion,
     drawings=_drawings,
     mesh=_mesh,

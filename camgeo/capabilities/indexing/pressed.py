@@ -1,4 +1,4 @@
-"""How near the metal of one flank comes to the roller of the other one, where a clearance or a preload parts them.
+"""Distance of the flank of the smaller roller from the half of a roller that has the other flank's radius.
 
 Each flank has a roller of its own radius. A roller is taken in halves, parted by the plane through its axis and square
 to its way: the half below has the lower flank's radius, the half above that of the upper flank. Where the track is
@@ -25,9 +25,9 @@ AROUND = 1.5  # radii of a roller by the radius of the core: angle, rad, over wh
 
 
 def other_half(design: IndexDesign) -> tuple[float, float]:
-    """Least distance, mm, from a flank of the smaller roller to the axis above or below it, and its shaft angle, rad.
+    """Least distance, mm, of the smaller roller's flank from the axis of a roller whose other half passes it.
 
-    It is that at which the other half of the roller is there; infinite where none is.
+    With it comes the shaft angle, rad. The distance is infinite where no other half passes the flank.
     """
     form = design.recipe.form
     flank = min(design.flanks.values(), key=lambda each: each.radius)

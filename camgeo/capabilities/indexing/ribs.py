@@ -84,7 +84,7 @@ def line_in(flank: Flank, w: float) -> tuple[Array, Array]:
 
 
 def layers(design: IndexDesign, deep: int = DEEP) -> list[Layer]:
-    """Layers from the floor to the blank, which is the last of so many beside the floor."""
+    """Layers at equal steps from the floor to the blank, `deep` + 1 in all."""
     form = design.recipe.form
     return [layer(design, w) for w in np.linspace(form.floor, form.blank, deep + 1).tolist()]
 

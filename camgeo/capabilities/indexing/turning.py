@@ -25,7 +25,7 @@ JOINT = 0.016  # of the cam's diameter and length together: size of a joint
 def scene(design: IndexDesign, step: int = 0, of: list[Layer] | None = None) -> Scene:
     """The cam as it stands at a step of the turn, and its turret over the turn, in the recipe's unit.
 
-    `of` are its layers, by default as they are made here.
+    `of` are the layers of the cam, which are computed by default.
     """
     recipe = design.recipe
     of = of or layers(design)

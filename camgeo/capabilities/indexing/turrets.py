@@ -113,11 +113,11 @@ class Turret(ABC):
 
     @abstractmethod
     def usual(self, radius: float) -> tuple[float, float]:
-        """Where rollers of a radius, mm, begin and end to bear, mm, where a recipe does not say."""
+        """Defaults of `from` and `to`, mm, between which rollers of a radius, mm, bear."""
 
     @abstractmethod
     def intended(self) -> Form:
-        """The form in kin's words."""
+        """Form of the intended cam, by which kin judges files."""
 
 
 @dataclass(frozen=True)

@@ -53,7 +53,7 @@ def least_regular(flank: Flank) -> tuple[float, float, float]:
 
 
 def demand_regular(flank: Flank) -> None:
-    """Raise UndercutError where a flank is undercut in the metal, or where it is not proved that it is not."""
+    """Raise UndercutError unless a flank is proved to be free of undercut within the metal."""
     least, at, layer = least_regular(flank)
     if least <= 0.0:
         raise UndercutError(f"the {flank.name} flank is undercut", at, layer)

@@ -24,7 +24,7 @@ if TYPE_CHECKING:
 
 
 def intended(design: IndexDesign, mm: float = 1.0) -> intent.IndexIntent:
-    """The cam in kin's words; `mm` is the unit of a drawing."""
+    """Intended cam by which kin judges files; `mm` is the length of a drawing's unit, mm."""
     recipe, roller = design.recipe, design.recipe.roller
     bore = None if design.bore is None else holes_of(Body(recipe.length, (design.bore,)))[0]
     return intent.IndexIntent(
@@ -55,8 +55,8 @@ def judged_file(
 ) -> IndexVerdict:
     """Kin's verdict on a file; `units` is mm in the unit of a file that states none.
 
-    A drawing that the recipe does not ask for is held against the lines that the recipe's developments have, or those
-    of one by default. Raises RecipeErrors for a drawing of a globoid.
+    A drawing that the recipe does not request is compared with all developments that it does request, or else with the
+    default one. Raises RecipeErrors for a drawing of a globoid.
     """
     from kin.indexing.judge import verify
 

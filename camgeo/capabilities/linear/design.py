@@ -174,7 +174,7 @@ class LinearDesign:
         return chosen
 
     def error(self, field: str, problem: str, remedy: str = "") -> RecipeErrors:
-        """Error at a field of the recipe, or at the nearest one above it that is given, in the recipe's unit."""
+        """Error at a field of the recipe, or at its nearest parent that is given; lengths are in the recipe's unit."""
         recipe = self.recipe
         return recipe.error(recipe.stated(field), in_recipe(recipe, problem), None, remedy)
 

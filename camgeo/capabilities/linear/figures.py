@@ -237,6 +237,6 @@ def _loaded(design: LinearDesign, steepest: tuple[float, float]) -> list[Figure]
 
 
 def bears(design: LinearDesign) -> float | None:
-    """Pressure that both materials bear, N/mm^2; None where neither states one."""
+    """Permissible pressure of the contact, N/mm^2: the lesser of both materials; None where neither states one."""
     drive = design.recipe.drive
     return bearable(drive.material, drive.roller_material)

@@ -41,7 +41,7 @@ class Job:
 
     def tolerance(self, request: FileRequest) -> float:
         """Tolerance of a file, mm."""
-        return request.tolerance or self.design.recipe.export.tolerance
+        return self.design.recipe.tolerance(request)
 
     def refusals(self, request: FileRequest) -> AbstractContextManager[None]:
         """Context that turns errors of a fit or a writer into those of the recipe."""

@@ -2,24 +2,23 @@
 
 from __future__ import annotations
 
-from functools import cached_property
+from functools import cached_property, partial
 from typing import TYPE_CHECKING
 
 import numpy as np
 
 from camgeo.api.check import Check, Figure, Figures
 from camgeo.api.log import stage_reporter
-from camgeo.api.own_kind import KindDesign
+from camgeo.api.own_kind import KindDesign, foreseen_with, order_of
 from camgeo.capabilities.linear.checks_of import design_checks, limits_held
 from camgeo.capabilities.linear.design import designed
 from camgeo.capabilities.linear.figures import figures_of
-from camgeo.checks.declared import FORM_CLOSURE, LIMIT, WATERTIGHT
-from camgeo.common.arguments import numbers_of, short_repr, whole_of
+from camgeo.checks.declared import FORM_CLOSURE, WATERTIGHT
+from camgeo.common.arguments import numbers_of
 from camgeo.common.clock import Clock
 from camgeo.common.errors import CallError
 from camgeo.measures.units import in_units
 from camgeo.recipe.figures import LEAST_WALL, PITCH_RADIUS, PRESSURE_ANGLE
-from camgeo.synthesis.expected_checks import Foreseen
 from kin.numeric.records import dataclass, field
 
 if TYPE_CHECKING:
@@ -29,9 +28,9 @@ if TYPE_CHECKING:
     from camgeo.capabilities.linear.keys import LinearRecipe
     from camgeo.checks.declaration import Entry
     from camgeo.recipe.export import FileRequest
+    from camgeo.synthesis.expected_checks import Foreseen
     from kin.numeric.arrays import Array
 
-MOST_DERIVATIVE = 6  # of the motion by the travel
 FIELDS = {
     PRESSURE_ANGLE: "cam.motion",
     PITCH_RADIUS: "cam.follower.radius",
@@ -77,9 +76,7 @@ class LinearCam(KindDesign):
         The result has the shape of `travel`. Raises CallError for another order, and for places that are not finite or
         outside the motion; TypeError for places that are no numbers.
         """
-        places, order = numbers_of("travel", travel), whole_of("derivative", derivative)
-        if order not in range(MOST_DERIVATIVE + 1):
-            raise CallError(f"a derivative is one of order 0 to {MOST_DERIVATIVE}, not {short_repr(order)}")
+        places, order = numbers_of("travel", travel), order_of(derivative)
         outside = not self.recipe.endless and ((places < 0.0) | (places > self._design.total)).any()
         if outside or not np.isfinite(places).all():
             raise CallError(f"places of the travel are from 0 to {self._design.total:.9g} mm")
@@ -143,19 +140,14 @@ OF_PROGRAM = ("cutter", "arcs", "rapid", "depth", "direction", "entry", "gouge")
 def foreseen(recipe: LinearRecipe) -> tuple[Foreseen, ...]:
     """Checks that the report is sure to have."""
     plate = recipe.plate
-    expected = [Foreseen(PRESSURE_ANGLE)]
+    expected = [PRESSURE_ANGLE]
     if recipe.follower.radius:
-        expected += [Foreseen(PITCH_RADIUS), Foreseen("undercut")]
+        expected += [PITCH_RADIUS, "undercut"]
     if plate.chamfer:
-        expected.append(Foreseen("chamfer"))
+        expected.append("chamfer")
     if recipe.groove or plate.holes or plate.slots or plate.mark:
-        expected.append(Foreseen(LEAST_WALL))
-    expected += [Foreseen(f"{LIMIT}{bound.figure}") for bound in recipe.limits]
-    for request in recipe.export.files:
-        if request.format.contour:
-            (name,) = recipe.filenames(request)
-            expected += [Foreseen(each, name) for each in _of_file(recipe, request)]
-    return tuple(dict.fromkeys(expected))
+        expected.append(LEAST_WALL)
+    return foreseen_with(expected, recipe, recipe.limits, partial(_of_file, recipe))
 
 
 def _of_file(recipe: LinearRecipe, request: FileRequest) -> list[str]:

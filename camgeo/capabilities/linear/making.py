@@ -18,7 +18,7 @@ from camgeo.files.precision import conversion_error
 from camgeo.fit.pieces import ArcSpline, Polygon
 from camgeo.measures.file_result import FileResult
 from camgeo.output.extension import MAKING, numbers_of
-from camgeo.output.own_kind import Made
+from camgeo.output.own_kind import Made, judged_made
 from camgeo.output.part_geometry import needs_booleans, part_mesh, remarks, solid_of
 from kin.numeric.records import replace
 
@@ -28,7 +28,6 @@ if TYPE_CHECKING:
     from camgeo.capabilities.linear.design import LinearDesign
     from camgeo.capabilities.linear.job import Job
     from camgeo.files.mesh import Mesh, MeshFacts
-    from camgeo.fit.bound import Bound
     from camgeo.fit.pieces import Outline
     from camgeo.formats.dxf import Reference
     from camgeo.part.shapes import Opening
@@ -84,15 +83,6 @@ def make(job: Job, request: FileRequest, path: Path) -> Made[PlateVerdict]:
 
             return make_program(job, request, path)
         return _mesh(job, request, path)
-
-
-def _judged(job: Job, request: FileRequest, path: Path, fit: tuple[int, Bound]) -> Made[PlateVerdict]:
-    """A written file with kin's verdict on it; `fit` is number of pieces and proved bound."""
-    tolerance = job.tolerance(request)
-    with job.clock.stage(f"judge {request.kind}"):
-        verdict = judged_file(job.design, path, request, tolerance)
-    file = FileResult(path, request, tolerance, *fit, units=verdict.units)
-    return Made(file, verdict.checks, verdict)
 
 
 def _unit(job: Job, request: FileRequest) -> float:
@@ -151,10 +141,10 @@ def _drawing(job: Job, request: FileRequest, path: Path) -> Made[PlateVerdict]:
                 about=recipe.about,
                 remarks=notes,
             )
-    bound = outlines[0].bound
+    pieces, bound = sum(outline.count for outline in outlines), outlines[0].bound
     for other in outlines[1:]:
         bound = bound.wider(other.bound)
-    return _judged(job, request, path, (sum(outline.count for outline in outlines), bound))
+    return judged_made(judged_file, design, path, request, clock=job.clock, fit=(pieces, bound))
 
 
 def _demand_room(job: Job, request: FileRequest, out: float) -> None:
@@ -234,7 +224,7 @@ def _mesh(job: Job, request: FileRequest, path: Path) -> Made[PlateVerdict]:
     mesh, facts = solid_mesh(job, request, request.kind, mm)
     with job.clock.stage(f"write {request.kind}"):
         write(path, [Item("plate", mesh)], recipe.name, mm, recipe.about)
-    return _judged(job, request, path, (facts.vertices, facts.bound))
+    return judged_made(judged_file, job.design, path, request, clock=job.clock, fit=(facts.vertices, facts.bound))
 
 
 def _glb(job: Job, request: FileRequest, path: Path) -> Made[PlateVerdict]:
@@ -279,4 +269,4 @@ def _step(job: Job, request: FileRequest, path: Path) -> Made[PlateVerdict]:
     pieces = outline.count
     if groove is not None:
         pieces, bound = pieces + groove.count, bound.wider(groove.bound.widened(wall_error(groove, units)))
-    return _judged(job, request, path, (pieces, bound))
+    return judged_made(judged_file, job.design, path, request, clock=job.clock, fit=(pieces, bound))

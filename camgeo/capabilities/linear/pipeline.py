@@ -12,7 +12,7 @@ from camgeo.capabilities.linear.making import cut_outlines, foresee, make, solid
 from camgeo.capabilities.linear.section import plate_section
 from camgeo.capabilities.linear.verdicts import file_rows, judged_file
 from camgeo.common.clock import Clock
-from camgeo.measures.units import UNIT_NAMES, report_unit
+from camgeo.measures.units import report_unit
 from camgeo.output.own_kind import OwnKind, Told
 from camgeo.recipe.export import FileRequest
 
@@ -24,7 +24,7 @@ if TYPE_CHECKING:
     from camgeo.files.layer_outline import LayerOutline
     from camgeo.files.mesh import Mesh
     from camgeo.measures.placed import Figure
-    from camgeo.output.own_kind import Made
+    from camgeo.output.own_kind import Made, Page
     from camgeo.report.page.scene import Scene
     from kin.linear.verdict import PlateVerdict
     from kin.numeric.arrays import Array
@@ -58,32 +58,16 @@ def _maker(design: LinearDesign, clock: Clock) -> Callable[[FileRequest, Path], 
     return lambda request, path: make(job, request, path)
 
 
-def _pieces(verdict: PlateVerdict) -> int:
-    return sum(flank.pieces or 0 for flank in verdict.flanks)
-
-
 def _seen(design: LinearDesign, _: int) -> Scene:
     from camgeo.capabilities.linear.plate_page import scene
 
     return scene(design)
 
 
-def _picture(design: LinearDesign) -> dict[str, Any]:
-    from camgeo.capabilities.linear.plate_page import drawn
+def _page() -> Page[LinearDesign]:
+    from camgeo.capabilities.linear import plate_page
 
-    return drawn(design)
-
-
-def _script(design: LinearDesign, made: Sequence[Made[PlateVerdict]]) -> dict[str, Any]:
-    from camgeo.capabilities.linear.plate_page import script
-
-    return script(design, made)
-
-
-def _panels(_: LinearDesign, report: dict[str, Any]) -> str:
-    from camgeo.report.page.tables import figures
-
-    return figures(report["plate"]["figures"], "at", f" {UNIT_NAMES[report['units']]}")
+    return plate_page
 
 
 def _drawings(design: LinearDesign, tolerance: float) -> list[tuple[str, Sequence[LayerOutline | Array]]]:
@@ -110,12 +94,8 @@ PLATES = OwnKind(
     foresee=foresee,
     maker=_maker,
     judged=judged_file,
-    pieces=_pieces,
     seen=_seen,
-    picture=_picture,
-    script=_script,
-    panels=_panels,
-    looks=lambda: ("", ""),
+    page_of=_page,
     motion=stated_motion,
     drawings=_drawings,
     mesh=_mesh,

@@ -14,7 +14,7 @@ from camgeo.fit.arcs import fit_arcs
 from camgeo.fit.pieces import ArcSpline
 from camgeo.measures.units import UNIT_NAMES
 from camgeo.recipe.figures import PRESSURE_ANGLE
-from camgeo.report.page import svg
+from camgeo.report.page import svg, tables
 from camgeo.report.page.followers import contact
 from camgeo.report.page.guided import HALF_STEM, WIDTH, Touch, knife_edge, roller, shoe
 from camgeo.report.page.page import picture, plotted
@@ -53,6 +53,16 @@ def script(design: LinearDesign, made: Sequence[Made[PlateVerdict]]) -> dict[str
         "contours": {},
         "errors": [],
     }
+
+
+def panels(_: LinearDesign, report: dict[str, Any]) -> str:
+    """HTML of the table of figures."""
+    return tables.figures(report["plate"]["figures"], "at", f" {UNIT_NAMES[report['units']]}")
+
+
+def looks() -> tuple[str, str]:
+    """No CSS and no JavaScript beside that of every page."""
+    return "", ""
 
 
 def _rests(design: LinearDesign) -> list[list[object]]:

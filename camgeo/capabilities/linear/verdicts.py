@@ -37,7 +37,7 @@ if TYPE_CHECKING:
 
 
 def follower_of(design: LinearDesign) -> LinearFollower:
-    """The follower in kin's words."""
+    """Follower of the intended plate, by which kin judges files."""
     recipe = design.recipe
     arm = recipe.follower.arm
     guide: Arm | Stem
@@ -49,7 +49,10 @@ def follower_of(design: LinearDesign) -> LinearFollower:
 
 
 def intended(design: LinearDesign, mm: float, *, solid: bool) -> PlateIntent:
-    """The plate in kin's words, in the axes of one that travels to the left; `mm` is a drawing's unit."""
+    """Intended plate by which kin judges files, in the axes of one that travels to the left.
+
+    `mm` is the length of a drawing's unit, mm; `solid` asks for the layers of a solid too.
+    """
     recipe = design.recipe
     ends, groove = recipe.ends, recipe.groove
     body = body_of(design, None)
@@ -92,7 +95,7 @@ def _layers(recipe: LinearRecipe, layers: tuple[Layer, ...], outline: Hole | Non
 
 
 def limits_of(recipe: LinearRecipe, tolerance: float, gap: float | None = None) -> Limits:
-    """Errors that kin permits."""
+    """Permitted errors of files; `tolerance` and `gap` in mm."""
     motion = recipe.verify.motion_error
     if motion is not None and recipe.swings:
         motion = math.degrees(motion)

@@ -1,6 +1,7 @@
 """Faults of an indexing cam's recipe: each names its line, its field and a change that helps.
 
-Holds: camgeo.capabilities.indexing.reading, camgeo.capabilities.indexing.keys,
+Holds: camgeo.capabilities.indexing.reading, camgeo.capabilities.indexing.form_rules,
+camgeo.capabilities.indexing.keys,
 camgeo.capabilities.indexing.index_recipe, camgeo.capabilities.indexing.soundness,
 camgeo.capabilities.indexing.exact, camgeo.capabilities.indexing.pressed.
 """
