@@ -39,6 +39,7 @@ LEVEL = 1e-9  # slope of a flank at its end below which it is level
 ROOM = (
     0.25  # of the roller's radius: half circles end a groove so much farther out, to leave the overrun whole in files
 )
+MOST_LONGER = 1024.0  # times the lengths of a motion, up to which a sound plate is sought
 SEEK = 512  # parts of a period among which the place of the flank at an edge, or where it is lowest, is sought
 
 
@@ -494,12 +495,12 @@ def _longer(design: LinearDesign, flank: Flank) -> float | None:
     return least_factor(free)
 
 
-def least_factor(holds: Callable[[float], bool], most: float = 1024.0) -> float | None:
-    """Least factor above 1, to a thousandth, from which on something holds; None where it does not up to `most`."""
+def least_factor(holds: Callable[[float], bool]) -> float | None:
+    """Least factor above 1, to a thousandth, from which on something holds; None where that is above MOST_LONGER."""
     high = 2.0
     while not holds(high):
         high *= 2.0
-        if high > most:
+        if high > MOST_LONGER:
             return None
     low = 0.5 * high
     while high - low > 1e-3 * high:
