@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any, Literal
 from camgeo.capabilities.indexing.forms import Barrel, Globoid
 from camgeo.capabilities.indexing.index_recipe import Drive, IndexRecipe
 from camgeo.capabilities.indexing.keys import FILES, FLOOR_GAP, RECIPE
-from camgeo.capabilities.indexing.turrets import BarrelTurret, GloboidTurret, Roller, reaching
+from camgeo.capabilities.indexing.turrets import LESS, BarrelTurret, GloboidTurret, Roller, reaching
 from camgeo.common.rounding import downward, upward
 from camgeo.motions.motion import check_filled
 from camgeo.part import bore
@@ -158,7 +158,11 @@ def _check_globoid(values: Values, reader: Reader) -> None:
         remedy = f"give more than {_more(least, reader)}, or a smaller globoid.radius or depth"
         reader.fault_at("cam.globoid.distance", problem, _shown(form["distance"], reader), remedy)
     most = STEEPEST_END * form["radius"]
-    if not max(abs(height), abs(length - height)) < most:
+    if length < 2.0 * most and not max(height, length - height) < most:
+        problem = "an end of the cam lies beside the throat, which is an arc about the turret's axis"
+        remedy = f"give one between {_shown(length - LESS * most, reader)} and {_shown(LESS * most, reader)}"
+        reader.fault_at("cam.turret.height", problem, _shown(height, reader), remedy)
+    elif not length < 2.0 * most:
         problem = "the ends of the cam lie beside the throat, which is an arc about the turret's axis"
         remedy = f"give less than {_less(2.0 * most, reader)}, with the turret's axis in the middle of it"
         reader.fault_at("part.length", problem, _shown(length, reader), remedy)
@@ -202,18 +206,16 @@ def _check_roller(values: Values, reader: Reader) -> None:
         problem = "the rim of the roller's end stands on the floor"
         reader.fault_at(f"{path}.to", problem, _shown(ends, reader), remedy)
     elif not ends > begins or (not begins < blank if barrel else not ends > blank):
-        at = next((f"{path}.{key}" for key in ("from", "to") if key in turret), "cam.depth")
-        low, high = min(deepest, blank), max(deepest, blank)
-        remedy = f"let it bear between {_shown(low, reader)} and {_less(high, reader)}"
-        rim = 0.0 if barrel else math.hypot(begins, turret["roller"]) - begins
-        remedy = remedy if at != "cam.depth" else f"give more than {_more(FLOOR_GAP + rim, reader)}"
+        low, high = (floor, blank) if barrel else (blank, deepest)
+        last = high if "to" in turret else ends
+        if "from" in turret and low < last and not low <= begins < last:
+            at, remedy = f"{path}.from", _bearing(low, last, reader)
+        elif "to" in turret and max(low, begins) < high:
+            at, remedy = f"{path}.to", _bearing(max(low, begins), high, reader)
+        else:
+            rim = 0.0 if barrel else math.hypot(max(blank, begins), turret["roller"]) - blank
+            at, remedy = "cam.depth", f"give more than {_more(FLOOR_GAP + rim, reader)}"
         reader.fault_at(at, "the roller bears nowhere", None, remedy)
-    least = LEAST_ROLLER * (blank if barrel else cam["globoid"]["distance"])
-    if turret["roller"] < least:
-        problem = f"too small beside the cam: it is less than {100.0 * LEAST_ROLLER:g} percent of "
-        problem += "the blank's radius" if barrel else "the distance of both axes"
-        remedy = f"give at least {_more(least, reader)}"
-        reader.fault_at(f"{path}.roller", problem, _shown(turret["roller"], reader), remedy)
     half = math.pi / turret["stops"]
     if barrel:
         room = turret["radius"] * math.sin(half)
@@ -223,6 +225,17 @@ def _check_roller(values: Values, reader: Reader) -> None:
         problem = "neighbouring rollers of the turret touch one another"
         remedy = f"give less than {_less(room, reader)}, or fewer stops"
         reader.fault_at(f"{path}.roller", problem, _shown(turret["roller"], reader), remedy)
+    least = LEAST_ROLLER * (blank if barrel else cam["globoid"]["distance"])
+    if turret["roller"] < least:
+        problem = f"too small beside the cam: it is less than {100.0 * LEAST_ROLLER:g} percent of "
+        problem += "the blank's radius" if barrel else "the distance of both axes"
+        larger = "turret.radius" if barrel else "globoid.radius"
+        remedy = f"give at least {_more(least, reader)}" + ("" if least < room else f", with a larger {larger}")
+        reader.fault_at(f"{path}.roller", problem, _shown(turret["roller"], reader), remedy)
+
+
+def _bearing(low: float, high: float, reader: Reader) -> str:
+    return f"let it bear between {_shown(low, reader)} and {_less(high, reader)}"
 
 
 def _check_developments(values: Values, reader: Reader) -> None:
