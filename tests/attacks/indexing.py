@@ -7,7 +7,7 @@ import re
 from typing import TYPE_CHECKING
 
 import numpy as np
-from capabilities.indexing.made_indexers import WINDOW, Rollers, random_indexer, recipe_of
+from capabilities.indexing.made_indexers import Rollers, random_indexer, recipe_of, window
 from support.heavy import ezdxf
 
 from attacks.outcome import Attack
@@ -106,7 +106,7 @@ def wrong(path: Path, text: str) -> list[str]:
         phi = recipe.sense * x / radius
         points = np.column_stack([radius * np.cos(phi), radius * np.sin(phi), z])[:: max(1, len(x) // 60)]
         size = recipe.roller.radius + (recipe.clearance if name == "upper" else 0.0)
-        off = float(np.abs(rollers.away(points, WINDOW).min(axis=1) - size).max())
+        off = float(np.abs(rollers.away(points, window(recipe.stops)).min(axis=1) - size).max())
         if off > 10.0 * recipe.export.tolerance + 1e-3:
             found.append(f"flank: {line.dxf.layer} is off by {off:.4g} mm")
     return found

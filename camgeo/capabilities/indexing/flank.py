@@ -149,7 +149,10 @@ class Flank:
 
     def on(self, theta: Array, w: Array | float, at: Side = 1) -> Contact:
         """Contacts at shaft angles theta (n,) in layers w, mm; raises CurveError where a layer is not touched."""
-        pose = self.pose(theta, at)
+        return self.touching(theta, self.pose(theta, at), w)
+
+    def touching(self, theta: Array, pose: Pose, w: Array | float) -> Contact:
+        """Contacts of a turret at shaft angles theta (n,) in layers w, mm; raises as `on` does."""
         rho = self.reached(pose, w)
         if not np.isfinite(rho).all():
             where = float(np.asarray(theta)[~np.isfinite(rho)][0])

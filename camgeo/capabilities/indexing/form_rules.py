@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Any, ClassVar
 
 from camgeo.capabilities.indexing.forms import Barrel, Globoid
 from camgeo.capabilities.indexing.keys import FLOOR_GAP
-from camgeo.capabilities.indexing.turrets import BarrelTurret, GloboidTurret, Roller, reaching
+from camgeo.capabilities.indexing.turrets import LESS, BarrelTurret, GloboidTurret, Roller, reaching
 from camgeo.common.rounding import downward, upward
 
 if TYPE_CHECKING:
@@ -54,13 +54,13 @@ class FormRules(ABC):
         """Note a floor that the rollers do not pass, and ends of the cam beyond its form."""
 
     @abstractmethod
-    def _reaches_floor(self, roller: Roller, floor: float) -> bool:
-        """Whether a roller reaches the floor, which is then noted; `floor` is where its end would stand on it."""
+    def _reaches_floor(self, roller: Roller, turret: Turret) -> bool:
+        """Whether a roller reaches the floor, which is then noted."""
 
     @property
     @abstractmethod
-    def _size(self) -> tuple[float, str]:
-        """Size, mm, by which the least roller is judged, and its name."""
+    def _size(self) -> tuple[float, str, str]:
+        """Size, mm, of which the least roller is a share, its name, and a key that makes room for a larger roller."""
 
     @abstractmethod
     def _room(self, roller: Roller) -> float:
@@ -75,32 +75,34 @@ class FormRules(ABC):
     def check_roller(self) -> None:
         """Note rollers that reach the floor, bear nowhere, are too small, or stand in one another's way."""
         reader, given, path, turret = self.reader, self.turret, "cam.turret", self.built()
-        roller, blank = self.roller(turret), turret.form.blank
-        floor = self._floor(turret.form.floor)
-        low, high = min(floor, blank), max(floor, blank)
-        if not self._reaches_floor(roller, floor) and not min(roller.outer, high) > max(roller.inner, low):
-            at = next((f"{path}.{key}" for key in ("from", "to") if key in given), "cam.depth")
-            remedy = f"let it bear between {reader.shown(low)} and {less(high, reader)}"
-            if at == "cam.depth":
-                remedy = f"give more than {_more(FLOOR_GAP + self._rim(roller), reader)}"
+        roller, (low, high) = self.roller(turret), self._reach(turret)
+        if not self._reaches_floor(roller, turret) and not min(roller.outer, high) > max(roller.inner, low):
+            last, begin = high if "to" in given else roller.outer, max(low, roller.inner)
+            if "from" in given and low < last and not low <= roller.inner < last:
+                at, remedy = f"{path}.from", _bearing(low, last, reader)
+            elif "to" in given and begin < high:
+                at, remedy = f"{path}.to", _bearing(begin, high, reader)
+            else:
+                at, remedy = "cam.depth", f"give more than {_more(FLOOR_GAP + self._rim(roller), reader)}"
             reader.fault_at(at, "the roller bears nowhere", None, remedy)
-        size, word = self._size
-        if roller.radius < LEAST_ROLLER * size:
-            problem = f"too small beside the cam: it is less than {100.0 * LEAST_ROLLER:g} percent of {word}"
-            remedy = f"give at least {_more(LEAST_ROLLER * size, reader)}"
-            reader.fault_at(f"{path}.roller", problem, reader.shown(roller.radius), remedy)
         room = self._room(roller)
         if not roller.radius < room:
             problem = "neighbouring rollers of the turret touch one another"
-            remedy = f"give less than {less(room, reader)}, or fewer stops"
+            remedy = f"give less than {_less(room, reader)}, or fewer stops"
+            reader.fault_at(f"{path}.roller", problem, reader.shown(roller.radius), remedy)
+        size, word, larger = self._size
+        least = LEAST_ROLLER * size
+        if roller.radius < least:
+            problem = f"too small beside the cam: it is less than {100.0 * LEAST_ROLLER:g} percent of {word}"
+            remedy = f"give at least {_more(least, reader)}" + ("" if least < room else f", with a larger {larger}")
             reader.fault_at(f"{path}.roller", problem, reader.shown(roller.radius), remedy)
 
-    def _floor(self, layer: float) -> float:
-        """Where the end of a roller stands on a floor in a layer, mm, measured as `from` and `to` are."""
-        return layer
+    @abstractmethod
+    def _reach(self, turret: Turret) -> tuple[float, float]:
+        """Least and greatest place along a roller, mm, between which it may touch the metal."""
 
     def _rim(self, roller: Roller) -> float:  # noqa: ARG002 - of a globoid alone
-        """By how much the rim of the roller's inner end is farther from the axis than its middle, mm."""
+        """By how much the rim of a roller that begins at the blank reaches deeper than the blank, mm."""
         return 0.0
 
     @property
@@ -138,11 +140,15 @@ class BarrelRules(FormRules):
         reader, depth, most = self.reader, self.cam["depth"], self.form["radius"] - self._largest
         if not depth < most:
             problem = "the floor is no farther from the axis than the radius of the roller"
-            remedy = f"give less than {less(most, reader)}, or a smaller roller"
+            remedy = f"give less than {_less(most, reader)}, or a smaller roller"
             remedy = remedy if most > NOTHING else "give a smaller roller, or a larger blank"
             reader.fault_at("cam.depth", problem, reader.shown(depth), remedy)
 
-    def _reaches_floor(self, roller: Roller, floor: float) -> bool:
+    def _reach(self, turret: Turret) -> tuple[float, float]:
+        return turret.form.floor, turret.form.blank
+
+    def _reaches_floor(self, roller: Roller, turret: Turret) -> bool:
+        floor = turret.form.floor
         if roller.inner > floor:
             return False
         reader, problem = self.reader, "the roller's end stands on the floor"
@@ -151,8 +157,8 @@ class BarrelRules(FormRules):
         return True
 
     @property
-    def _size(self) -> tuple[float, str]:
-        return self.form["radius"], "the blank's radius"
+    def _size(self) -> tuple[float, str, str]:
+        return self.form["radius"], "the blank's radius", "turret.radius"
 
     def _room(self, roller: Roller) -> float:
         del roller
@@ -184,36 +190,46 @@ class GloboidRules(FormRules):
             remedy = f"give more than {_more(least, reader)}, or a smaller globoid.radius or depth"
             reader.fault_at("cam.globoid.distance", problem, reader.shown(form["distance"]), remedy)
         most = STEEPEST_END * form["radius"]
-        if not max(abs(height), abs(self.length - height)) < most:
+        if self.length < 2.0 * most and not max(height, self.length - height) < most:
+            problem = "an end of the cam lies beside the throat, which is an arc about the turret's axis"
+            remedy = f"give one between {reader.shown(self.length - LESS * most)} and {reader.shown(LESS * most)}"
+            reader.fault_at("cam.turret.height", problem, reader.shown(height), remedy)
+        elif not self.length < 2.0 * most:
             problem = "the ends of the cam lie beside the throat, which is an arc about the turret's axis"
-            remedy = f"give less than {less(2.0 * most, reader)}, with the turret's axis in the middle of it"
+            remedy = f"give less than {_less(2.0 * most, reader)}, with the turret's axis in the middle of it"
             reader.fault_at("part.length", problem, reader.shown(self.length), remedy)
 
-    def _reaches_floor(self, roller: Roller, floor: float) -> bool:
+    def _reach(self, turret: Turret) -> tuple[float, float]:
+        return turret.form.blank, reaching(turret.form.floor, self.turret["roller"])
+
+    def _reaches_floor(self, roller: Roller, turret: Turret) -> bool:
+        _, floor = self._reach(turret)
         if "to" not in self.turret or roller.outer < floor:
             return False
         reader, problem = self.reader, "the rim of the roller's end stands on the floor"
-        remedy = f"give less than {less(floor, reader)}, or a greater depth"
+        remedy = f"give less than {_less(floor, reader)}, or a greater depth"
         reader.fault_at("cam.turret.to", problem, reader.shown(roller.outer), remedy)
         return True
 
     @property
-    def _size(self) -> tuple[float, str]:
-        return self.form["distance"], "the distance of both axes"
+    def _size(self) -> tuple[float, str, str]:
+        return self.form["distance"], "the distance of both axes", "globoid.radius"
 
     def _room(self, roller: Roller) -> float:
         half = math.pi / self.turret["stops"]
         throat = APART * self.form["radius"] * math.sin(min(2.0 * half, 0.5 * math.pi))
         return float(min(roller.inner * math.sin(half), throat))
 
-    def _floor(self, layer: float) -> float:
-        return reaching(layer, self.turret["roller"])
-
     def _rim(self, roller: Roller) -> float:
-        return math.hypot(roller.inner, roller.radius) - roller.inner
+        blank = self.form["radius"]
+        return float(math.hypot(max(blank, roller.inner), roller.radius) - blank)
 
 
-def less(value: float, reader: Reader) -> str:
+def _bearing(low: float, high: float, reader: Reader) -> str:
+    return f"let it bear between {reader.shown(low)} and {_less(high, reader)}"
+
+
+def _less(value: float, reader: Reader) -> str:
     """A length a little below a bound, mm, in the recipe's unit."""
     return f"{downward(value / reader.mm, 5)} {reader.units}"
 

@@ -48,6 +48,11 @@ def directed(a: Number, b: Number, inverse: Number) -> tuple[Number, Number]:
     return sin_cos(atan2(b, a)) if isinstance(a, Ball) else (b * inverse, a * inverse)
 
 
+def _arcsine(share: float) -> float:
+    """Angle of a sine, rad; a quarter turn where it is beyond 1."""
+    return math.asin(min(max(share, -1.0), 1.0))
+
+
 def length_of(a: Number, b: Number) -> Number:
     """Length of (a, b), of arrays or balls."""
     square = a**2 + b**2
@@ -91,6 +96,11 @@ class Pose(NamedTuple):
         psi = rows[0] + start
         sine, cosine = sin_cos(psi) if isinstance(psi, Ball) else (np.sin(psi), np.cos(psi))
         return Pose(sine, cosine, rows[1], rows[2], rows[3])
+
+    @staticmethod
+    def standing(psi: Array) -> Pose:
+        """The turret as if it stood still, with a roller at angles (n,), rad."""
+        return Pose(np.sin(psi), np.cos(psi), *np.zeros((3, psi.size)))
 
 
 @dataclass(frozen=True)
@@ -217,7 +227,7 @@ class Barrel:
         Beyond them the whole roller is past an end face.
         """
         low, high = (-self.height - radius) / self.pitch, (self.length - self.height + radius) / self.pitch
-        return math.asin(max(low, -1.0)), math.asin(min(high, 1.0))
+        return _arcsine(low), _arcsine(high)
 
     @property
     def core(self) -> float:
@@ -372,10 +382,10 @@ class Globoid:
         roller touches and the roller's axis is at most asin(radius/throat).
         """
         low, high = -self.height / self.radius, (self.length - self.height) / self.radius
-        beside = math.asin(min(radius / self.radius, 1.0))
+        beside = _arcsine(radius / self.radius)
         return (
-            max(math.asin(max(low, -1.0)) - beside, -QUARTER),
-            min(math.asin(min(high, 1.0)) + beside, QUARTER),
+            max(_arcsine(low) - beside, -QUARTER),
+            min(_arcsine(high) + beside, QUARTER),
         )
 
     @property

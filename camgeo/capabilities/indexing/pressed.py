@@ -13,6 +13,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from camgeo.capabilities.indexing.forms import Pose
 from camgeo.capabilities.indexing.tracks import track
 
 if TYPE_CHECKING:
@@ -39,7 +40,8 @@ def other_half(design: IndexDesign) -> tuple[float, float]:
         inside = np.flatnonzero((rows.z > 0.0) & (rows.z < form.length))[::EACH]
         at: Array = (theta[inside, None] + steps).ravel()
         z, phi = (np.repeat(each[inside], STEPS) for each in (rows.z, rows.phi))
-        r, pose, lean = form.beside(w, z), flank.pose(at), form.lean(flank.psi(at))
+        psi = flank.psi(at)
+        r, pose, lean = form.beside(w, z), Pose.standing(psi), form.lean(psi)
         along, _, way = form.axes(pose, -np.sin(lean), np.cos(lean))
         place = r * np.cos(phi - at), r * np.sin(phi - at), z
         axis = form.axis(pose, np.full_like(at, w))

@@ -13,19 +13,30 @@ import numpy as np
 
 from camgeo.capabilities.indexing.pressed import other_half
 from camgeo.capabilities.indexing.spans import TrackError, demand_ends
-from camgeo.capabilities.indexing.tracks import rib_thickness, track
+from camgeo.capabilities.indexing.tracks import LAYERS, rib_thickness, track
 from camgeo.capabilities.indexing.undercut import demand_regular
 from camgeo.common.rounding import downward
 from camgeo.curve.curve import CurveError
+from camgeo.schema.errors import RecipeErrors
 
 if TYPE_CHECKING:
     from collections.abc import Callable
 
     from camgeo.capabilities.indexing.design import IndexDesign
+    from camgeo.capabilities.indexing.index_recipe import IndexRecipe
 
-LAYERS = 5  # in which undercut is sought
 SHARP = 1e-3  # of a radius in a remedy
 CLEAR = 1.01  # radii of a roller in a remedy, between its axis and the flank that its other half passes
+TRIED = (
+    1.0 - SHARP,
+    0.995,
+    0.99,
+    0.98,
+    0.95,
+    0.9,
+    0.8,
+)  # of a greatest size that samples find: those tried for a remedy
+CENTRED = "with the turret's axis in its middle"
 ROLLER = "cam.turret.roller"
 
 
@@ -49,19 +60,18 @@ def demand_sound(design: IndexDesign) -> None:
         try:
             least, at, layer = _least_regular(design, name)
         except CurveError as error:
-            raise design.error(ROLLER, f"the {name} flank: {error}", _smaller(design, _all_regular)) from error
+            raise design.error(ROLLER, f"the {name} flank: {error}", _smaller(design)) from error
         if not least > 0.0:
             mm, units = design.recipe.mm, design.recipe.units
             problem = (
                 f"the {name} flank is undercut at {layer / mm:.6g} {units} from the axis of "
                 f"{design.recipe.turret.about}, near {math.degrees(at) % 360.0:.6g} degrees"
             )
-            remedy = _smaller(design, _all_regular) or "give a longer rise"
-            raise design.error(ROLLER, problem, remedy)
+            raise design.error(ROLLER, problem, _smaller(design))
     thin, at = rib_thickness(design)
     if not thin > 0.0:
         problem = f"the rollers leave no rib between them, near {math.degrees(at) % 360.0:.6g} degrees"
-        raise design.error(ROLLER, problem, _smaller(design, lambda other: rib_thickness(other)[0] > 0.0))
+        raise design.error(ROLLER, problem, _smaller(design))
     _demand_parted(design)
     _demand_proved(design)
 
@@ -80,47 +90,39 @@ def _demand_parted(design: IndexDesign) -> None:
         other = design.cleared(sign * size)
         return other_half(other)[0] >= CLEAR * other.largest
 
-    size, mm = _largest(abs(recipe.clearance), sound), recipe.mm
+    size = _largest(recipe, abs(recipe.clearance), sound)
     half, name = ("upper", "lower") if sign > 0.0 else ("lower", "upper")
     problem = f"the {half} half of a roller meets the {name} flank, near {math.degrees(at) % 360.0:.6g} degrees"
-    remedy = f"give at most {downward(size / mm, 4)} {recipe.units}" if size > 0.0 else "leave it out"
+    remedy = f"give at most {size}" if size else "leave it out"
     raise design.error(f"cam.turret.{word}", problem, remedy)
 
 
 def _demand_proved(design: IndexDesign) -> None:
     """Raise RecipeErrors where the track does not go from end face to end face, or undercut is not proved away."""
     try:
-        demand_ends(design.flanks)
+        _passes(design)
     except TrackError as error:
-        length = _largest(design.recipe.length, lambda length: _passes(design.shortened(length)))
-        mm, units = design.recipe.mm, design.recipe.units
-        remedy = error.remedy
-        if length > 0.0:
-            remedy = f"give at most {downward(length / mm, 4)} {units}, with the turret's axis in its middle"
+        length = _largest(design.recipe, design.recipe.length, lambda length: _passes(design.shortened(length)))
+        remedy = f"give at most {length}, {CENTRED}" if length else error.remedy
         where = f"near {math.degrees(error.parameter) % 360.0:.6g} degrees"
         raise design.error("part.length", f"{error}, {where}", remedy) from error
     try:
-        for flank in design.flanks.values():
-            demand_regular(flank)
+        _proved(design)
     except CurveError as error:
         where = f"near {math.degrees(error.parameter) % 360.0:.6g} degrees"
         raise design.error(ROLLER, f"{error}, {where}", _smaller(design, _proved)) from error
 
 
 def _passes(design: IndexDesign) -> bool:
-    try:
-        demand_ends(design.flanks)
-    except CurveError:
-        return False
+    """Whether the track goes from end face to end face; raises TrackError where it does not."""
+    demand_ends(design.flanks)
     return True
 
 
 def _proved(design: IndexDesign) -> bool:
-    try:
-        for flank in design.flanks.values():
-            demand_regular(flank)
-    except CurveError:
-        return False
+    """Whether no flank is undercut; raises CurveError where that is not proved."""
+    for flank in design.flanks.values():
+        demand_regular(flank)
     return True
 
 
@@ -131,17 +133,14 @@ def _demand_forward(design: IndexDesign, name: str) -> None:
         problem = (
             f"the turret takes a roller back as fast as the floor turns, near {math.degrees(at) % 360.0:.6g} degrees"
         )
+        least = 2.0 * design.recipe.roller.radius
 
         def sound(length: float) -> bool:
-            shorter = design.shortened(length)
-            return all(_forward(shorter, each)[0] > 0.0 for each in shorter.flanks) and _all_regular(shorter)
+            return length > least and _sampled(design.shortened(length))
 
-        length = _largest(design.recipe.length, sound)
-        mm, units = design.recipe.mm, design.recipe.units
-        shorter = f", or a length of at most {downward(length / mm, 4)} {units}, with the turret's axis in its middle"
-        raise design.error(
-            "cam.motion", problem, f"give a longer rise{shorter if length > 2.0 * design.recipe.roller.radius else ''}"
-        )
+        length = _largest(design.recipe, design.recipe.length, sound)
+        shorter = f", or a length of at most {length}, {CENTRED}" if length else ""
+        raise design.error("cam.motion", problem, f"give a longer rise{shorter}")
 
 
 def _forward(design: IndexDesign, name: str) -> tuple[float, float]:
@@ -173,24 +172,46 @@ def _least_regular(design: IndexDesign, name: str) -> tuple[float, float, float]
     return min(found, default=(math.inf, 0.0, 0.0))
 
 
-def _all_regular(design: IndexDesign) -> bool:
-    try:
-        return all(_least_regular(design, name)[0] > 0.0 for name in design.flanks)
-    except CurveError:
-        return False
+def _sampled(design: IndexDesign) -> bool:
+    """Whether samples find a track that goes forward, regular flanks, and a rib; raises CurveError and RecipeErrors."""
+    forward = all(_forward(design, name)[0] > 0.0 for name in design.flanks)
+    regular = forward and all(_least_regular(design, name)[0] > 0.0 for name in design.flanks)
+    return regular and rib_thickness(design)[0] > 0.0
 
 
-def _smaller(design: IndexDesign, sound: Callable[[IndexDesign], bool]) -> str:
-    """Remedy with the largest roller, to a thousandth, of which a cam is sound; empty where none is found."""
-    mm, units = design.recipe.mm, design.recipe.units
-    radius = _largest(design.recipe.roller.radius, lambda radius: sound(design.resized(radius)))
-    return f"give a roller radius of at most {downward(radius / mm, 4)} {units}" if radius > 0.0 else ""
+def _smaller(design: IndexDesign, proof: Callable[[IndexDesign], bool] = _sampled) -> str:
+    """Remedy with the largest roller, to a thousandth, of which a cam is sound; another where none is found."""
+    shown = _largest(
+        design.recipe,
+        design.recipe.roller.radius,
+        lambda radius: _sampled(design.resized(radius)),
+        lambda radius: proof(design.resized(radius)),
+    )
+    return f"give a roller radius of at most {shown}" if shown else "give a longer rise or a smaller depth"
 
 
-def _largest(high: float, sound: Callable[[float], bool]) -> float:
-    """A little less than the largest size below `high`, mm, to a thousandth, that is sound; 0 where none is found."""
+def _largest(
+    recipe: IndexRecipe, high: float, sound: Callable[[float], bool], proof: Callable[[float], bool] | None = None
+) -> str:
+    """A little less than the largest size below `high`, mm, to a thousandth, that is sound, in the recipe's unit.
+
+    The size as it is written has passed `proof`, or `sound` where that is None. The text is empty where none is found.
+    A size at which one of them raises CurveError or RecipeErrors is not sound.
+    """
+
+    def holds(known: Callable[[float], bool], size: float) -> bool:
+        try:
+            return known(size)
+        except (CurveError, RecipeErrors):
+            return False
+
     low, limit = 0.0, SHARP * high
     while high - low > max(SHARP * high, 0.1 * limit):
         middle = 0.5 * (low + high)
-        low, high = (middle, high) if sound(middle) else (low, middle)
-    return (1.0 - SHARP) * low
+        low, high = (middle, high) if holds(sound, middle) else (low, middle)
+    # near the bound, samples may find a size sound and a smaller one not, or the proof may be open
+    for share in TRIED if low > 0.0 else ():
+        shown = downward(share * low / recipe.mm, 4)
+        if holds(proof or sound, float(shown) * recipe.mm):
+            return f"{shown} {recipe.units}"
+    return ""

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from functools import lru_cache
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -12,14 +13,17 @@ from kin.numeric.angles import TURN
 if TYPE_CHECKING:
     from camgeo.capabilities.indexing.design import IndexDesign
     from camgeo.capabilities.indexing.flank import Contact
+    from camgeo.capabilities.indexing.forms import Pose
     from kin.numeric.arrays import Array
 
+LAYERS = 5  # from floor to blank, in which a cam is sampled
 STEPS = 1440  # places of a turn at which a track is known
 PASSED = 8  # of these places that a roller has to be within the cam at least
 
 
-def angles(design: IndexDesign) -> Array:
-    """Shaft angles (n,), rad, at which the roller that stands at the start after no turn may touch the cam.
+@lru_cache(maxsize=2)
+def passed(design: IndexDesign) -> tuple[Array, Pose]:
+    """Shaft angles (n,), rad, at which the roller that stands at the start after no turn may touch the cam; the turret.
 
     Raises RecipeErrors where a step is so short that there are next to none.
     """
@@ -37,16 +41,18 @@ def angles(design: IndexDesign) -> Array:
     if not near.size:
         problem = f"the turret takes a roller past the cam within {360.0 / STEPS:.6g} degrees"
         raise design.error("cam.motion", problem, "give a longer rise")
-    return theta[near[0] : near[-1] + 1]
+    theta = theta[near[0] : near[-1] + 1]
+    return theta, design.flanks["lower"].pose(theta)
 
 
+@lru_cache(maxsize=4 * LAYERS)  # those of two designs: regularity, ribs and figures ask for the same layers
 def track(design: IndexDesign, name: str, w: float) -> tuple[Array, Contact]:
     """Shaft angles (n,), rad, and contacts of a flank in a layer, mm.
 
     Raises CurveError where a roller does not touch the layer.
     """
-    theta = angles(design)
-    return theta, design.flanks[name].on(theta, w)
+    theta, pose = passed(design)
+    return theta, design.flanks[name].touching(theta, pose, w)
 
 
 def rib_thickness(design: IndexDesign) -> tuple[float, float]:

@@ -23,7 +23,8 @@ RIM = 1.5  # radii of a roller from its axis to the rim of a dial, in a drawing
 HUB, SPOKE = 0.25, 0.4  # of the pitch radius, and of a roller's radius: hub and half width of spokes of a dial
 GAP = 0.2  # radii of a roller between a blank and the plate before it
 STUD, INNER_END = 0.7, 0.97  # of a roller's radius, and of the hub's: half width and inner end of the stud of a roller
-LESS = 0.999  # of a greatest length, in a remedy
+LESS, MORE = 0.999, 1.01  # of a greatest or a least length, in a remedy
+LEAST = 1e-3  # mm by which a remedy moves an axis at least
 
 
 def reaching(layer: float, roller: float) -> float:
@@ -150,17 +151,24 @@ class BarrelTurret(Turret):
         low, high = form.spanned(radius)
         end = max(-low, high)
         if not end < steepest:
-            most = 2.0 * (pitch * math.sin(steepest) - radius)
+            reach = pitch * math.sin(steepest)
+            most = LESS * (reach - radius)  # half of a length
             problem = "the rollers stand past the floor's edge before they leave the cam at its ends"
-            lowest, highest = form.length - 0.5 * most * LESS, 0.5 * most * LESS
-            if lowest < highest:  # as long as it is, with the turret's axis elsewhere
-                return "cam.turret.height", problem, f"give one between {shown(lowest)} and {shown(highest)}"
-            remedy = f"give less than {shown(most * LESS)}, with the turret's axis in the middle of it"
-            return "part.length", problem, remedy if most > 0.0 else "give a smaller roller"
+            if not most > 0.0:
+                return "cam.turret.roller", problem, f"give less than {shown(LESS * reach)}, and a short cam"
+            lowest = form.length - most
+            if lowest < most:  # as long as it is, with the turret's axis elsewhere
+                return "cam.turret.height", problem, f"give one between {shown(lowest)} and {shown(most)}"
+            remedy = f"give less than {shown(2.0 * LESS * most)}, with the turret's axis in the middle of it"
+            return "part.length", problem, remedy
         # a roller comes back between the end faces at the angle pi - end, and then moves farther off
-        if not away + pitch * math.cos(end) - radius > form.radius:
+        lacking = form.radius + radius - away - pitch * math.cos(end)
+        if not lacking < 0.0:
             problem = "the rollers meet the cam on their way back, behind the turret's axis"
-            return "cam.turret.radius", problem, "give a larger one with an offset that is larger by as much"
+            more = MORE * lacking / (1.0 + math.cos(end)) + MORE * LEAST
+            offset = shown(form.side * (away + more))
+            remedy = f"give {shown(pitch + more)}, and a barrel.offset of {offset}"
+            return "cam.turret.radius", problem, remedy
         return None
 
     def drawn(self, roller: Roller, stops: int, sense: float) -> Drawn:

@@ -23,7 +23,7 @@ if TYPE_CHECKING:
     from camgeo.capabilities.indexing.flank import Flank
     from kin.numeric.arrays import Array, Mask
 
-CELLS, PARTS, ROUNDS, MOST_OPEN = 360, 4, 15, 60_000  # of the proof: of a turn, of the depth, and rounds
+CELLS, PARTS, MOST_PARTS, ROUNDS, MOST_OPEN = 360, 4, 64, 15, 60_000  # of the proof: of a turn, of the depth, rounds
 LAYERS = 17  # in which an undercut is sought
 
 
@@ -63,7 +63,7 @@ def demand_regular(flank: Flank) -> None:
     breaks = breaks_within(flank)
     count = math.ceil(CELLS * (end - begin) / TURN)
     theta = np.unique(np.concatenate([np.linspace(begin, end, count + 1), breaks[(breaks > begin) & (breaks < end)]]))
-    edges = np.linspace(low, high, math.ceil(PARTS * (high - low) / flank.form.depth) + 1)
+    edges = np.linspace(low, high, min(math.ceil(PARTS * (high - low) / flank.form.depth), MOST_PARTS) + 1)
     n, parts = theta.size - 1, edges.size - 1
     a, b = np.tile(theta[:-1], parts), np.tile(theta[1:], parts)
     c, d = np.repeat(edges[:-1], n), np.repeat(edges[1:], n)

@@ -107,8 +107,13 @@ def rollers_of(design: IndexDesign, over: float) -> Rollers:
     return Rollers(recipe.turret.word, vars(recipe.form), recipe.stops, over, recipe.start)
 
 
-WINDOW = np.linspace(-1.5 * math.tau, 2.5 * math.tau, 8 * 1440 + 1)
-"""Shaft angles at which the roller of no turn may be near the cam, of a turret that begins half a pitch below."""
+def window(stops: int) -> np.ndarray:
+    """Shaft angles (n,), rad, at which the roller of no turn stands within a quarter turn of the cam, and some more.
+
+    The turret begins half a pitch below the plane across the cam's axis.
+    """
+    turns = stops // 4 + 1
+    return np.linspace(-turns * math.tau, turns * math.tau, 2 * turns * 2880 + 1)
 
 
 # --- random recipes ---------------------------------------------------------------------------------------------------

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 import pytest
-from capabilities.indexing.made_indexers import changed, design_of, shared_design
+from capabilities.indexing.made_indexers import Rollers, changed, design_of, shared_design, window
 from capabilities.indexing.rollers import TURN, Indexed, barrel_away, nearest
 from support.heavy import ezdxf
 
@@ -68,6 +68,16 @@ def test_the_second_derivative_is_bounded() -> None:
     size = np.hypot(*bent)
     assert (size <= bound + 1e-4).all()
     assert (bound <= 1.1 * size + 1.0).all()
+
+
+@pytest.mark.parametrize("stops", [2, 6, 12, 60])
+def test_random_developments_are_held_against_rollers_at_all_angles(stops: int) -> None:
+    """The angles of `window` lead the roller of no turn through the half turn that faces the cam."""
+    sizes = {"height": 0.0, "pitch": 60.0, "offset": 60.0, "side": 1.0}
+    psi = Rollers("barrel", sizes, stops, 200.0, -math.pi / stops).psi(window(stops))
+    assert psi.min() <= -0.5 * math.pi
+    assert psi.max() >= 0.5 * math.pi
+    assert np.diff(window(stops)).max() < 0.0025
 
 
 def test_too_many_points() -> None:

@@ -12,7 +12,15 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 import pytest
-from capabilities.indexing.made_indexers import BARREL, GLOBOID, WINDOW, changed, design_of, rollers_of, shared_design
+from capabilities.indexing.made_indexers import (
+    BARREL,
+    GLOBOID,
+    changed,
+    design_of,
+    rollers_of,
+    shared_design,
+    window,
+)
 
 from camgeo.capabilities.indexing.checks_of import design_checks, remarks_on, walls
 from camgeo.capabilities.indexing.figures import figures_of, volume
@@ -86,14 +94,14 @@ def test_what_rollers_take_out_of_a_layer(text: str, share: float) -> None:
     low, high = (float(end) for end in form.ends(w))
     heights = low + (np.arange(160) + 0.5) * (high - low) / 160
     phi = math.tau * (np.arange(12) + 0.37) / 12
-    area, inside = 0.0, 0.0
+    every, area, inside = window(design.recipe.stops), 0.0, 0.0
     for angle in phi.tolist():
         # of one roller, all its turns: the same as all rollers of one turn
         free = np.zeros(heights.size, dtype=bool)
         for turn in (-1, 0, 1):
             points = form.points(np.full(heights.size, angle + turn * math.tau), heights, w)
-            near = np.abs(WINDOW - angle - turn * math.tau) < 1.5
-            free |= rollers.away(points, WINDOW[near][::8]).min(axis=1) < design.recipe.roller.radius
+            near = np.abs(every - angle - turn * math.tau) < 1.5
+            free |= rollers.away(points, every[near][::8]).min(axis=1) < design.recipe.roller.radius
         each = w if text == BARREL else w * (90.0 - w * np.cos(heights))
         area += float(np.sum(free * each)) * (high - low) / 160 * math.tau / 12
         inside += float(np.sum(np.ones(160) * each)) * (high - low) / 160 * math.tau / 12
@@ -119,15 +127,15 @@ def test_the_rib_is_thinnest_where_rollers_come_nearest_to_one_another(text: str
     design = shared_design(text)
     thin, at = rib_thickness(design)
     form, rollers = design.recipe.form, rollers_of(design, OVER[text])
-    there, elsewhere = [], []
+    every, there, elsewhere = window(design.recipe.stops), [], []
     for w in (form.floor, 0.5 * (form.floor + form.blank), form.blank):
         low, high = (float(end) for end in form.ends(w))
         unit = 1.0 if text == BARREL else w
         h = np.linspace(low, high, 900)
         place = float(design.flanks["upper"].on(np.array([at]), w).phi[0])
         for phi in (place, *(place + np.radians(np.arange(-45.0, 46.0, 5.0)))):
-            near = WINDOW[(np.abs(WINDOW - phi) < 1.4)][::6]
-            next_one = WINDOW[(np.abs(WINDOW - phi - math.tau) < 1.4)][::6]
+            near = every[(np.abs(every - phi) < 1.4)][::6]
+            next_one = every[(np.abs(every - phi - math.tau) < 1.4)][::6]
             below = rollers.away(form.points(np.full(h.size, phi), h, w), near).min(axis=1)
             above = rollers.away(form.points(np.full(h.size, phi), h, w), next_one).min(axis=1)
             lower, upper = below < design.recipe.roller.radius, above < design.recipe.roller.radius

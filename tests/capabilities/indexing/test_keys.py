@@ -86,7 +86,11 @@ REFUSED = [
     (BARREL, ("roller: 9", "roller: 0.01"), "given 0.01 mm; give at least 0.5 mm"),
     (BARREL, ("roller: 9", "roller: 0.5"), None),
     (GLOBOID, ("roller: 8", "roller: 0.8"), "percent of the distance of both axes, given 0.8 mm; give at least 0.9 mm"),
-    (BARREL, ("roller: 9", "roller: 9, from: 40, to: 39"), "bears nowhere; let it bear between 37 mm and 50 mm"),
+    (
+        BARREL,
+        ("roller: 9", "roller: 9, from: 40, to: 39"),
+        "cam.turret.to: the roller bears nowhere; let it bear between 40 mm and 50 mm",
+    ),
     # 62.5^2 = 61.98588^2 + 8^2, and 49^2 + 8^2 = 49.64877^2
     (
         GLOBOID,
@@ -95,6 +99,18 @@ REFUSED = [
     ),
     (GLOBOID, ("roller: 8", "roller: 8, to: 61.985"), None),
     (GLOBOID, ("roller: 8", "roller: 8, to: 48"), "bears nowhere; let it bear between 49 mm and 61.985 mm"),
+    # one of both ends is at fault, and the other one stays
+    (
+        BARREL,
+        ("roller: 9", "roller: 9, from: 55, to: 45"),
+        "cam.turret.from: the roller bears nowhere; let it bear between 37 mm and 50 mm",
+    ),
+    (BARREL, ("roller: 9", "roller: 9, from: 40, to: 45"), None),
+    (
+        GLOBOID,
+        ("roller: 8", "roller: 8, from: 61.5"),
+        "turret.from: the roller bears nowhere; let it bear between 49 mm",
+    ),
     (GLOBOID, ("depth: 13.5", "depth: 1.1"), "cam.depth: the roller bears nowhere; give more than 1.1488 mm"),
     (GLOBOID, ("depth: 13.5", "depth: 1.5"), None),
     (BARREL, ("depth: 13", "depth: 0.4"), "cam.depth: the roller bears nowhere; give more than 0.5 mm"),
@@ -158,6 +174,7 @@ LONG = changed(
     ("{rise: 45, over: 120, law: cycloidal}, {dwell: 240}", "{rise: 36, over: 213, law: polynomial-345}, {dwell: 147}"),
     ("length: 60, bore: 20", "length: 79, bore: 8"),
 )
+TALL = r"turret\.height: .* give one between ([\d.]+) mm"
 REMEDIES = [
     # proofs fail where all places looked at are sound: both ask for a little less
     (LONG, ("length: 79", "length: 79.5"), r"end face.*at most ([\d.]+) mm, with", ("length: 79.5", "length: {}"), 1.0),
@@ -186,10 +203,14 @@ REMEDIES = [
     ),
     (BARREL, ("length: 80", "length: 110"), r"give less than ([\d.]+) mm, with", ("length: 110", "length: {}"), 0.85),
     (BARREL, ("length: 80", "length: 140"), r"give less than ([\d.]+) mm, with", ("length: 140", "length: {}"), 0.85),
+    (BARREL, ("roller: 9", "roller: 9, height: 1e4"), TALL, ("height: 1e4", "height: {}"), 1.1),
+    (BARREL, ("roller: 9", "roller: 9, height: -1e4"), TALL, ("height: -1e4", "height: {}"), 1.1),
+    (GLOBOID, ("roller: 8", "roller: 8, height: 1e4"), TALL, ("height: 1e4", "height: {}"), 2.0),
+    (GLOBOID, ("roller: 8", "roller: 8, height: -40"), TALL, ("height: -40", "height: {}"), 2.0),
     (
         BARREL,
         ("roller: 9", "roller: 9, height: 25"),
-        r"turret\.height: .* give one between ([\d.]+) mm",
+        TALL,
         ("height: 25", "height: {}"),
         1.1,
     ),
@@ -292,14 +313,18 @@ def test_a_cam_too_short_to_bear_is_told_without_warnings() -> None:
     assert failed == ["contact-length"]
 
 
-def test_rollers_that_meet_the_cam_behind_the_turret() -> None:
+@pytest.mark.parametrize("side", ["trailing", "leading"])
+def test_rollers_that_meet_the_cam_behind_the_turret(side: str) -> None:
     """A small turret beside a large barrel: a larger one, with its axis farther off by as much, clears it."""
+    text = changed(SMALL, ("roller: 4", f"roller: 4, side: {side}"))
     with pytest.raises(RecipeErrors) as error:
-        design_of(SMALL)
-    assert "the rollers meet the cam on their way back, behind the turret's axis; give a larger one" in str(error.value)
-    offset = recipe_of(SMALL).turret.sizes["offset"]
-    larger = changed(SMALL, ("radius: 25", "radius: 45"), ("{radius: 50}", f"{{radius: 50, offset: {offset + 20.0}}}"))
-    design_of(larger)
+        design_of(text)
+    found = re.search(
+        r"on their way back, behind the turret's axis; give ([\d.]+) mm, and a barrel.offset of (-?[\d.]+)",
+        str(error.value),
+    )
+    assert found is not None, str(error.value)
+    design_of(changed(text, ("radius: 25", f"radius: {found[1]}"), ("50}", f"50, offset: {found[2]}}}")))
 
 
 @pytest.mark.costly("a search for a size, and two cams")

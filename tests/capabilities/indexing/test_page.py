@@ -16,11 +16,11 @@ import pytest
 from capabilities.indexing.made_indexers import (
     BARREL,
     GLOBOID,
-    WINDOW,
     advance,
     changed,
     rollers_of,
     shared_design,
+    window,
 )
 from support.browser import Browser, executable
 
@@ -142,8 +142,9 @@ def test_metal_is_seen_where_no_roller_has_been(text: str, over: float, layer_at
         shown = [seen_point(design, layer_at, psi, z, theta) for psi, z in places]
         points = np.concatenate([point for _, point in shown])
         # rollers do not reach through the cam's axis to its far side
-        here = points[:, :1] * np.cos(WINDOW) + points[:, 1:2] * np.sin(WINDOW) > 0.0
-        away = np.where(here, rollers.away(points, WINDOW), np.inf).min(axis=1) - size
+        every = window(design.recipe.stops)
+        here = points[:, :1] * np.cos(every) + points[:, 1:2] * np.sin(every) > 0.0
+        away = np.where(here, rollers.away(points, every), np.inf).min(axis=1) - size
         assert (away > 0.3).sum() > 40
         assert (away < -0.3).sum() > 40
         for (x, _), (_, z), off in zip(shown, places, away.tolist(), strict=True):
