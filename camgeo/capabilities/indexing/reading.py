@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from typing import TYPE_CHECKING, Any, Literal
 
-from camgeo.capabilities.indexing.forms import Barrel, Globoid
+from camgeo.capabilities.indexing.forms import LEAST_ROLLER, Barrel, Globoid
 from camgeo.capabilities.indexing.index_recipe import Drive, IndexRecipe
 from camgeo.capabilities.indexing.keys import FILES, FLOOR_GAP, RECIPE
 from camgeo.capabilities.indexing.turrets import LESS, BarrelTurret, GloboidTurret, Roller, reaching
@@ -41,7 +41,6 @@ NOT_YET = {
 FORMATS_NOT_YET = ("svg", "step", "gcode")
 NOTHING = 1e-9  # mm: a length below it is none
 APART = 0.8  # of the distance in a globoid's throat from a roller's axis to the next one, that a roller may fill
-LEAST_ROLLER = 0.01  # of a barrel's radius or a globoid's distance: the time of a proof grows with its inverse
 STEEPEST_END = math.sin(math.radians(80.0))  # of a globoid's end face, seen from the turret's axis
 
 
@@ -225,7 +224,7 @@ def _check_roller(values: Values, reader: Reader) -> None:
         problem = "neighbouring rollers of the turret touch one another"
         remedy = f"give less than {_less(room, reader)}, or fewer stops"
         reader.fault_at(f"{path}.roller", problem, _shown(turret["roller"], reader), remedy)
-    least = LEAST_ROLLER * (blank if barrel else cam["globoid"]["distance"])
+    least = _turret(values).form.least_roller
     if turret["roller"] < least:
         problem = f"too small beside the cam: it is less than {100.0 * LEAST_ROLLER:g} percent of "
         problem += "the blank's radius" if barrel else "the distance of both axes"
