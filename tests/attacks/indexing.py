@@ -7,10 +7,12 @@ import re
 from typing import TYPE_CHECKING
 
 import numpy as np
-from capabilities.indexing.made_indexers import Rollers, random_indexer, recipe_of, window
+import yaml
+from capabilities.indexing.made_indexers import Rollers, design_of, random_indexer, recipe_of, window
 from support.heavy import ezdxf
 
 from attacks.outcome import Attack
+from camgeo.schema.errors import RecipeErrors
 
 if TYPE_CHECKING:
     from pathlib import Path
@@ -18,6 +20,10 @@ if TYPE_CHECKING:
 
     from attacks.outcome import Done
 
+REMEDY = re.compile(
+    r"index\.yaml:\d+:\d+: (?P<path>[\w.]+): (?P<problem>[^,;\d]+)[^;]*; .*?"
+    r"(?P<word>less than|at most|more than|at least|between) (?P<size>-?[\d.e+-]+)(?: \w+ and (?P<most>-?[\d.e+-]+))?"
+)
 SLIPS = (
     ("radius:", "raduis:"),
     ("depth", "deep"),
@@ -39,7 +45,16 @@ SLIPS = (
     ("barrel: ", "globoid: "),
     ("globoid: ", "barrel: "),
     ("turret: {", "turret: {height: 1e4, "),
+    ("turret: {", "turret: {height: -1e4, "),
+    ("turret: {", "turret: {height: 9, "),
     ("turret: {", "turret: {start: 179, "),
+    ("turret: {", "turret: {from: 40, to: 39, "),
+    ("turret: {", "turret: {to: 9, "),
+    ("barrel: {", "barrel: {offset: 9, "),
+    ("depth: ", "depth: 0.00"),
+    ("length: ", "length: 1"),
+    ("radius: ", "radius: 1"),
+    ("radius: ", "radius: 0.0"),
     ("clearance: ", "preload: 1, clearance: "),
     ("preload: ", "preload: 9"),
     ("kind: indexing", "kind: globoid"),
@@ -132,4 +147,34 @@ def slipped(rng: Random, number: int) -> Attack:
     text = text.replace("ccw", "cw")
     old, new = rng.choice([slip for slip in SLIPS if slip[0] in text])
     text = text.replace("files: [stl]", "files: [csv]").replace(old, new, 1)
-    return Attack(f"slipped indexing cam {number}", ("check", "index.yaml"), {"index.yaml": text.encode()}, (0, 1, 2))
+
+    def judge(done: Done, _: Path) -> list[str]:
+        return [] if done.status != 2 else useless(done.err, text)
+
+    words = ("check", "index.yaml")
+    return Attack(f"slipped indexing cam {number}", words, {"index.yaml": text.encode()}, (0, 1, 2), judge)
+
+
+def useless(told: str, text: str) -> list[str]:
+    """A size that a refusal names, of which the same field is refused with the same words once it is given."""
+    found = REMEDY.search(told)
+    values = yaml.safe_load(text)
+    if found is None or "motion" in found["path"]:
+        return []
+    *way, last = found["path"].split(".")
+    where = values
+    for key in way:
+        where = where[key]
+    size, most = float(found["size"]), float(found["most"] or 0.0)
+    where[last] = {"less than": 0.9999 * size, "more than": 1.0001 * size, "between": 0.5 * (size + most)}.get(
+        found["word"], size
+    )
+    if "the turret's axis in" in told:
+        values["cam"]["turret"].pop("height", None)
+    try:
+        design_of(yaml.safe_dump(values))
+    except RecipeErrors as errors:
+        again = REMEDY.search(str(errors))
+        if again is not None and (again["path"], again["problem"]) == (found["path"], found["problem"]):
+            return [f"remedy: followed, and told again: {told.strip()[-300:]}"]
+    return []

@@ -9,7 +9,7 @@ import math
 from abc import ABC, abstractmethod
 from typing import TYPE_CHECKING, Any, ClassVar
 
-from camgeo.capabilities.indexing.forms import Barrel, Globoid
+from camgeo.capabilities.indexing.forms import LEAST_ROLLER, Barrel, Globoid
 from camgeo.capabilities.indexing.keys import FLOOR_GAP
 from camgeo.capabilities.indexing.turrets import LESS, BarrelTurret, GloboidTurret, Roller, reaching
 from camgeo.common.rounding import downward, upward
@@ -22,7 +22,6 @@ if TYPE_CHECKING:
 
 NOTHING = 1e-9  # mm: a length below it is none
 APART = 0.8  # of the distance in a globoid's throat from a roller's axis to the next one, that a roller may fill
-LEAST_ROLLER = 0.01  # of a barrel's radius or a globoid's distance: the time of a proof grows with its inverse
 STEEPEST_END = math.sin(math.radians(80.0))  # of a globoid's end face, seen from the turret's axis
 
 
@@ -35,6 +34,8 @@ class FormRules(ABC):
     """Rules of one form of cam; faults are noted in the reader."""
 
     key: ClassVar[str]  # of the form, in `cam`
+    size: ClassVar[str]  # size of the cam by which the least roller is judged, in messages
+    larger: ClassVar[str]  # key whose increase makes room for larger rollers
 
     def __init__(self, values: Values, reader: Reader) -> None:
         self.reader = reader
@@ -56,11 +57,6 @@ class FormRules(ABC):
     @abstractmethod
     def _reaches_floor(self, roller: Roller, turret: Turret) -> bool:
         """Whether a roller reaches the floor, which is then noted."""
-
-    @property
-    @abstractmethod
-    def _size(self) -> tuple[float, str, str]:
-        """Size, mm, of which the least roller is a share, its name, and a key that makes room for a larger roller."""
 
     @abstractmethod
     def _room(self, roller: Roller) -> float:
@@ -90,11 +86,12 @@ class FormRules(ABC):
             problem = "neighbouring rollers of the turret touch one another"
             remedy = f"give less than {_less(room, reader)}, or fewer stops"
             reader.fault_at(f"{path}.roller", problem, reader.shown(roller.radius), remedy)
-        size, word, larger = self._size
-        least = LEAST_ROLLER * size
+        least = turret.form.least_roller
         if roller.radius < least:
-            problem = f"too small beside the cam: it is less than {100.0 * LEAST_ROLLER:g} percent of {word}"
-            remedy = f"give at least {_more(least, reader)}" + ("" if least < room else f", with a larger {larger}")
+            problem = f"too small beside the cam: it is less than {100.0 * LEAST_ROLLER:g} percent of {self.size}"
+            remedy = f"give at least {_more(least, reader)}" + (
+                "" if least < room else f", with a larger {self.larger}"
+            )
             reader.fault_at(f"{path}.roller", problem, reader.shown(roller.radius), remedy)
 
     @abstractmethod
@@ -120,7 +117,7 @@ class FormRules(ABC):
 class BarrelRules(FormRules):
     """Rules of a barrel."""
 
-    key = "barrel"
+    key, size, larger = "barrel", "the blank's radius", "turret.radius"
 
     def check_keys(self) -> None:
         """Note a missing radius of the turret."""
@@ -156,10 +153,6 @@ class BarrelRules(FormRules):
         reader.fault_at("cam.turret.from", problem, reader.shown(roller.inner), remedy)
         return True
 
-    @property
-    def _size(self) -> tuple[float, str, str]:
-        return self.form["radius"], "the blank's radius", "turret.radius"
-
     def _room(self, roller: Roller) -> float:
         del roller
         return float(self.turret["radius"] * math.sin(math.pi / self.turret["stops"]))
@@ -168,7 +161,7 @@ class BarrelRules(FormRules):
 class GloboidRules(FormRules):
     """Rules of a globoid."""
 
-    key = "globoid"
+    key, size, larger = "globoid", "the distance of both axes", "globoid.radius"
 
     def check_keys(self) -> None:
         """Note keys of a barrel's turret."""
@@ -210,10 +203,6 @@ class GloboidRules(FormRules):
         remedy = f"give less than {_less(floor, reader)}, or a greater depth"
         reader.fault_at("cam.turret.to", problem, reader.shown(roller.outer), remedy)
         return True
-
-    @property
-    def _size(self) -> tuple[float, str, str]:
-        return self.form["distance"], "the distance of both axes", "globoid.radius"
 
     def _room(self, roller: Roller) -> float:
         half = math.pi / self.turret["stops"]

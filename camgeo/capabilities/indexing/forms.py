@@ -35,6 +35,7 @@ if TYPE_CHECKING:
     from kin.numeric.arrays import Array, Indices
 
 QUARTER = 0.5 * math.pi
+LEAST_ROLLER = 0.01  # of a barrel's radius or a globoid's distance: the time of a proof grows with its inverse
 WIDEST = math.pi / 3.0  # polar angle that a triangle may span, however coarse
 LESS = 0.95  # times the span of a triangle that is too wide
 Number: TypeAlias = Any
@@ -128,6 +129,11 @@ class Barrel:
     def floor(self) -> float:
         """Layer of the track's floor, mm."""
         return self.radius - self.depth
+
+    @property
+    def least_roller(self) -> float:
+        """Least radius of a roller, mm."""
+        return LEAST_ROLLER * self.radius
 
     def speed(self, pose: Pose, rho: Number) -> Speed:
         """How the roller's axis moves at distances rho along it."""
@@ -275,6 +281,11 @@ class Globoid:
     def floor(self) -> float:
         """Layer of the track's floor, mm."""
         return self.radius + self.depth
+
+    @property
+    def least_roller(self) -> float:
+        """Least radius of a roller, mm."""
+        return LEAST_ROLLER * self.distance
 
     def speed(self, pose: Pose, rho: Number) -> Speed:
         """How the roller's axis moves at distances rho along it."""

@@ -179,13 +179,15 @@ def _sampled(design: IndexDesign) -> bool:
     return regular and rib_thickness(design)[0] > 0.0
 
 
-def _smaller(design: IndexDesign, proof: Callable[[IndexDesign], bool] = _sampled) -> str:
+def _smaller(design: IndexDesign, proof: Callable[[IndexDesign], bool] = lambda _: True) -> str:
     """Remedy with the largest roller, to a thousandth, of which a cam is sound; another where none is found."""
+    recipe = design.recipe
+
+    def sound(radius: float) -> bool:
+        return radius >= recipe.form.least_roller and _sampled(design.resized(radius))
+
     shown = _largest(
-        design.recipe,
-        design.recipe.roller.radius,
-        lambda radius: _sampled(design.resized(radius)),
-        lambda radius: proof(design.resized(radius)),
+        recipe, recipe.roller.radius, sound, lambda radius: sound(radius) and proof(design.resized(radius))
     )
     return f"give a roller radius of at most {shown}" if shown else "give a longer rise or a smaller depth"
 

@@ -343,6 +343,42 @@ def test_a_length_that_does_not_serve_alone_is_not_offered() -> None:
     design_of(changed(shorter, ("over: 90", "over: 180"), ("270", "180")))
 
 
+@pytest.mark.costly("a search for a size, and a cam of it")
+def test_a_size_that_is_named_serves_as_it_is_written() -> None:
+    """By samples alone 14.13 mm would serve; with it, the rib is cut away."""
+    text = """cam:
+  kind: indexing
+  barrel: {radius: 34.64276586563071}
+  depth: 9.548799739777126
+  turret: {stops: 7, radius: 68.66615917090706, roller: 15.77757596501763, side: leading}
+  motion: [{rise: 360/7, over: 205.8155660108796, law: modified-sine}, {dwell: 154.1844339891204}]
+part: {length: 62.72843093142297, bore: 12}
+"""
+    with pytest.raises(RecipeErrors) as error:
+        design_of(text)
+    found = re.search(r"give a roller radius of at most ([\d.]+) mm", str(error.value))
+    assert found is not None, str(error.value)
+    design_of(changed(text, ("15.77757596501763", found[1])))
+
+
+def test_no_roller_is_named_that_is_too_small() -> None:
+    """A step of one degree leaves a rib between rollers alone that are too small: a longer one serves."""
+    text = changed(
+        GLOBOID, ("stops: 8, roller: 8", "stops: 60, roller: 2"), ("rise: 45, over: 120", "rise: 6, over: 1")
+    )
+    text = changed(text, ("dwell: 240", "dwell: 359"))
+    with pytest.raises(RecipeErrors, match=r"leave no rib between them.*; give a longer rise or a smaller depth$"):
+        design_of(text)
+    design_of(changed(text, ("over: 1,", "over: 300,"), ("dwell: 359", "dwell: 60")))
+
+
+def test_where_no_smaller_roller_is_looked_into_without_an_error() -> None:
+    """A roller that touches no layer, while the greatest one that leaves a rib is sought, does not serve."""
+    text = changed(BARREL, ("length: 80", "length: 90"), ("roller: 9", "roller: 29"))
+    with pytest.raises(RecipeErrors, match=r"give "):
+        design_of(text)
+
+
 def test_rollers_that_leave_no_rib() -> None:
     """Rollers that nearly touch one another cut the rib between them away; the smaller ones named leave one."""
     text = changed(
