@@ -172,7 +172,7 @@ def wrong(folder: Path, tolerance: float) -> list[str]:
 
 
 def flank(path: Path, step: float) -> np.ndarray:
-    """Points (n, 2) of the closed outline on CUT, in the drawing's unit: in steps of `step`, on arcs of STEP, at most."""
+    """Points (n, 2) of the closed outline on CUT, `step` apart at most and on arcs STEP, in the drawing's unit."""
     import ezdxf
 
     polyline: Any
