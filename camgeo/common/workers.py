@@ -36,7 +36,7 @@ KILLED = (
 
 
 class Killed:
-    """In place of a result: a process was killed before it was done, and another one that worked on it alone."""
+    """In place of a result: two processes were killed that worked on the item alone."""
 
 
 class _OverError(BaseException):
@@ -145,17 +145,20 @@ def at_once(
     """Pairs of an item and the function's result, in the order in which they end.
 
     At most `workers` processes work at once; the function has to stand in a module. Where a process is killed, the
-    items that were at work are tried again, each alone, and the others go on in new processes. `fork` is that of
-    `pool`, as long as this process may be forked; `waiting` is called with the number of items done before each wait.
-    Raises what the function raises.
+    items that were at work are tried again, each alone, and the others go on in new processes. An item is told as
+    killed once two processes have died that worked on it alone: a death in company may be that of another item.
+    `fork` is that of `pool`, as long as this process may be forked; `waiting` is called with the number of items done
+    before each wait. Raises what the function raises.
     """
     from concurrent.futures import FIRST_COMPLETED, wait
     from concurrent.futures.process import BrokenProcessPool
 
-    left, due, done = deque(items), deque[T](), 0
+    left, due, done = deque(items), deque[tuple[T, int]](), 0  # due: with the number of deaths of an item alone
     while left or due:
-        alone = bool(due)
-        queue = deque([due.popleft()]) if alone else left
+        queue, deaths = left, 0
+        if due:
+            item, deaths = due.popleft()
+            queue = deque([item])
         count = needed(workers, len(queue))
         running: dict[Future[R], T] = {}
         try:
@@ -180,12 +183,13 @@ def at_once(
                 yield item, future.result()
         if not lost and queue:  # processes that do not even start
             lost = [queue.popleft()]
-        if alone:
-            done += len(lost)
-            yield from ((item, Killed()) for item in lost)
-        else:  # processes take items in their order: the first ones were at work
-            due.extend(lost[:count])
-            left.extendleft(reversed(lost[count:]))
+        for item in lost[:count]:  # processes take items in their order: the first ones were at work
+            if count == 1 and deaths:
+                done += 1
+                yield item, Killed()
+            else:
+                due.append((item, int(count == 1)))
+        left.extendleft(reversed(lost[count:]))
 
 
 def _start_server() -> None:

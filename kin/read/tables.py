@@ -183,7 +183,7 @@ def _columns(rows: Rows, sheet: Sheet, field: str) -> tuple[int | None, int]:
     if width < 2:
         remedy = "for one of displacements alone give columns: {column: 1, step: 2}, the step from row to row"
         raise RowError(f"1 column, and 2 are expected; {remedy}", int(rows.numbers[0]))
-    numbered = rows.numbered()
+    numbered = rows.numbered() if width > 2 else [0, 1]  # of two the numbers are not asked: what is none is told later
     words = [{word.rstrip("0123456789") for word in _words(name)} for name in names]
     known = _LENGTH_NAMES if sheet.length else _ANGLE_NAMES if sheet.period is None else _TIME_NAMES
     angles = [k for k in numbered if names and known & words[k]]

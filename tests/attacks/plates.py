@@ -155,7 +155,8 @@ def wrong(folder: Path, tolerance: float) -> list[str]:
     """What is wrong of the motion that the drawing gives, over some places of the travel."""
     recipe: Any = camgeo.load(folder / "plate.yaml")
     design: Any = camgeo.design(recipe)
-    points = flank(folder / "out" / "plate" / "plate.dxf") * recipe.mm
+    step = 0.2 * math.sqrt(recipe.follower.radius * tolerance * recipe.mm)  # the roller sinks by 0.5 % of it between
+    points = flank(folder / "out" / "plate" / "plate.dxf", step / recipe.mm) * recipe.mm
     if recipe.travel == "right":
         points[:, 0] *= -1.0
     span = design.travel
@@ -170,8 +171,8 @@ def wrong(folder: Path, tolerance: float) -> list[str]:
     return [] if worst <= 1.02 * most + 1e-6 / lever else [f"verdict: off by {worst:.3g}, {most:.3g} is allowed"]
 
 
-def flank(path: Path) -> np.ndarray:
-    """Points (n, 2) of the closed outline on CUT, arcs in steps of STEP, in the drawing's unit."""
+def flank(path: Path, step: float) -> np.ndarray:
+    """Points (n, 2) of the closed outline on CUT, `step` apart at most and on arcs STEP, in the drawing's unit."""
     import ezdxf
 
     polyline: Any
@@ -181,7 +182,7 @@ def flank(path: Path) -> np.ndarray:
     for (x, y, bulge), (far_x, far_y, _) in zip(rows, np.roll(rows, -1, axis=0), strict=True):
         start, chord = np.array([x, y]), np.array([far_x - x, far_y - y])
         sweep = 4.0 * math.atan(bulge)
-        count = max(math.ceil(abs(sweep) / STEP), 200)
+        count = max(math.ceil(abs(sweep) / STEP), math.ceil(math.hypot(*chord) / step), 200)
         share = np.arange(count) / count
         if abs(sweep) < 1e-9:
             found.append(start + share[:, None] * chord)

@@ -5,8 +5,10 @@ from __future__ import annotations
 import json
 from typing import TYPE_CHECKING, Any
 
+import numpy as np
 import pytest
 from support.brute_disc import Touching
+from support.heavy import ezdxf
 
 from attacks import cams, runner, valves
 from attacks.cams import Cam, wrong_verdict
@@ -142,3 +144,16 @@ def test_sound_cams_are_exported_with_every_kind_of_file() -> None:
     _, files = exported(0, 1)
     assert {"yaml", "dxf", "svg", "stl", "3mf"} <= set(files)
     assert "ngc" in files  # needs: milling
+
+
+# needs: linear
+def test_a_long_edge_of_a_plate_has_points_as_near_as_is_asked_for(tmp_path: Path) -> None:
+    from attacks.plates import flank
+
+    drawing = ezdxf.new()
+    corners = [(0.0, 0.0), (200.0, 0.0), (200.0, 30.0), (0.0, 30.0)]
+    drawing.modelspace().add_lwpolyline(corners, close=True, dxfattribs={"layer": "CUT"})
+    drawing.saveas(tmp_path / "plate.dxf")
+    apart = np.hypot(*np.diff(flank(tmp_path / "plate.dxf", 0.02), axis=0).T)
+    assert apart[:10_000] == pytest.approx(0.02)  # the longest edge
+    assert apart.max() <= 0.15 + 1e-9  # an edge of 30 in 200 steps

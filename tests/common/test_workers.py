@@ -10,6 +10,9 @@ import subprocess
 import sys
 import tempfile
 import time
+from concurrent.futures import Future
+from concurrent.futures.process import BrokenProcessPool
+from contextlib import nullcontext
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -121,6 +124,37 @@ def test_what_kills_its_process_is_tried_alone_and_the_rest_goes_on(tmp_path: Pa
     assert made == {number: 2 * number for number in (0, 1, 2, 4, 5, 6, 7, 8)}
     assert left == sorted(left)
     assert left[0] == 0
+
+
+@pytest.mark.parametrize("count", [1, 2])
+def test_an_item_is_told_as_killed_after_two_deaths_that_it_alone_can_have_caused(
+    count: int, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """The pool is played: two processes at work lose both items, and one alone dies as often as is said here."""
+    deaths = {"once": 1, "always": 9, "never": 0}
+    tried: list[list[str]] = []
+
+    class Played:
+        def __init__(self, size: int) -> None:
+            self.size = size
+            tried.append([])
+
+        def submit(self, _function, item: str) -> Future[str]:
+            tried[-1].append(item)
+            future: Future[str] = Future()
+            if self.size == 2 or deaths[item]:
+                deaths[item] -= self.size == 1
+                future.set_exception(BrokenProcessPool())
+            else:
+                future.set_result(item)
+            return future
+
+    monkeypatch.setattr(workers, "pool", lambda size, **_: nullcontext(Played(size)))
+    made = dict(workers.at_once(str, ["once", "always"], count))
+    assert made.pop("once") == "once"
+    assert isinstance(made.pop("always"), workers.Killed)
+    assert made == {}
+    assert [items for items in tried if len(items) == 1].count(["always"]) == 2
 
 
 def temporary(kill: bool) -> str:

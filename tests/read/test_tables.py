@@ -64,6 +64,10 @@ def test_a_column_without_a_unit_is_in_the_first_of_its_quantity(quantity, unit)
             "line 3: 'x' is not a number, in '1;x'; an angle and a displacement are expected",
         ),
         (
+            "deg;lift\n0;1,000.5\n1;1,001.5\n",
+            "line 2: '1,000.5' is not a number, in '0;1,000.5'; an angle and a displacement are expected",
+        ),
+        (
             "0,1,0,2\n1,5,0,3\n",
             (
                 "line 1: the table's columns are 4 without a heading; give those of the angle and the value, such as "

@@ -18,7 +18,7 @@ from kin.numeric.angles import TURN
 from kin.numeric.places import place_text
 from kin.numeric.records import dataclass
 from kin.read.drawing.shapes import Shape, shape
-from kin.read.step.curves import Spline, edge_of, spline_of
+from kin.read.step.curves import Conic, Spline, Straight, edge_of, spline_of
 from kin.read.step.patch import PATCH, Patch, patch_of
 
 if TYPE_CHECKING:
@@ -36,6 +36,7 @@ SAME = 1e-9  # rad, within which a bound that comes down and one that goes up ar
 SPLINE_ERROR = 1e-9  # mm, of the arcs by which edges are held against a swept spline
 FINE = 1e-12  # of the extent
 WOUND = 1.0  # rad, by which bounds may miss going round and back: they miss it by nothing, or by whole turns
+CONIC_PARTS = 64  # chords in place of a circle or an ellipse
 MOST_NAMED = 3  # edges in a message
 
 Crossing: TypeAlias = "tuple[Array, bool]"
@@ -111,9 +112,10 @@ class Tube:
 
 @dataclass(frozen=True, eq=False)
 class Swept:
-    """Vertical wall over a plane curve, given by the curve's spans as seen from above."""
+    """Vertical wall over a plane curve, given by the curve's spans as seen from above, and whether it is swept up."""
 
     spans: Beziers
+    up: bool
 
     level: ClassVar[bool] = False
     upright: ClassVar[bool] = True
@@ -127,6 +129,10 @@ class Swept:
     def off(self, points: Array) -> Array:
         """Distances (k,) of points (k, 3) from the wall, mm."""
         return nearest(self.arcs, points[:, :2])[1]
+
+    def along(self, points: Array) -> Array:
+        """Directions (k, 2) of the curve near points (k, 2)."""
+        return self.arcs.tangents(0.5 * self.arcs.length)[nearest(self.arcs, points)[0]]
 
 
 Surface: TypeAlias = "Plane | RoundFace | Tube | Swept | Patch"
@@ -204,6 +210,45 @@ class Face:
             total += run if forward != backwards else -run
         return total
 
+    @property
+    def inside_out(self) -> bool:
+        """Whether it lies on the right of its bounds as seen from outside.
+
+        False for patches, level cylinders, and bounds that go the wrong way round.
+        """
+        if abs(self.winding) > WOUND:
+            return False
+        match self.surface:
+            case Plane():
+                points = [points_along(*use) for use in self.uses]
+                area = sum(0.5 * np.cross(row[:-1], row[1:]).sum(axis=0) for row in points) @ self.surface.normal
+            case RoundFace():
+                area = self.unrolled
+            case Swept():
+                area = self.unrolled if self.surface.up else -self.unrolled
+            case _:
+                return False
+        return bool((area if self.outward else -area) < 0.0)
+
+    @property
+    def unrolled(self) -> float:
+        """Area of an upright wall, unrolled; above 0 where it lies on the left of its bounds.
+
+        It is in mm rad of a cylinder or a cone, seen from beyond it, and in mm² of a swept curve, seen from its right.
+        """
+        total = 0.0
+        for use in self.uses:
+            points = points_along(*use)
+            middle, step = 0.5 * (points[1:] + points[:-1]), np.diff(points[:, :2], axis=0)
+            if isinstance(self.surface, RoundFace):
+                run = np.diff(np.unwrap(np.arctan2(*(points[:, :2] - self.surface.centre).T[::-1])))
+            elif isinstance(self.surface, Swept):
+                run = np.einsum("kc,kc->k", step, self.surface.along(middle[:, :2]))
+            else:
+                return 0.0
+            total -= float(middle[:, 2] @ run)
+        return total
+
     def section(self, space: StepFile, z: float) -> list[Shape]:
         """Pieces of the section just above a height z, mm, in the face; none for a level face or a height beyond it.
 
@@ -276,6 +321,18 @@ class Face:
 
     def _contrary(self, space: StepFile) -> Exception:
         return space.file.error(self.number, "its bounds do not enclose a part of its surface that faces outward")
+
+
+def points_along(edge: StepEdge, forward: bool) -> Array:
+    """Points (k, 3), mm, along an edge, in the sense of a bound."""
+    match edge.curve:
+        case Straight():
+            points = np.stack([edge.start, edge.end])
+        case Conic():
+            points = edge.curve.at(np.linspace(0.0, 1.0, CONIC_PARTS + 1))
+        case _:
+            points = edge.samples[::-1] if edge.curve.back else edge.samples
+    return points if forward else points[::-1]
 
 
 def _arc(centre: Array, radius: float, first: float, sweep: float) -> Shape:
@@ -376,7 +433,7 @@ def _swept(space: StepFile, number: int) -> Surface:
         raise file.error(number, "it is not swept along the vertical")
     path = file.reference(curve, number)
     file.kind(path, ("B_SPLINE_CURVE_WITH_KNOTS", "BEZIER_CURVE"), number)
-    return Swept(spline_of(space, path).plan)
+    return Swept(spline_of(space, path).plan, bool(along[2] > 0.0))
 
 
 def edge_faults(faces: Sequence[Face]) -> list[str]:

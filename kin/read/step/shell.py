@@ -14,7 +14,7 @@ from kin.read.bodies import MOST_BODIES, beside
 from kin.read.errors import ReadError
 from kin.read.formats import contents
 from kin.read.step.curves import Conic, Straight
-from kin.read.step.faces import Plane, RoundFace, edge_faults, face_of
+from kin.read.step.faces import Plane, RoundFace, edge_faults, face_of, points_along
 from kin.read.step.part21 import exchange
 from kin.read.step.patch import Patch
 from kin.read.step.space import space_of
@@ -22,7 +22,6 @@ from kin.read.step.space import space_of
 if TYPE_CHECKING:
     from pathlib import Path
 
-    from kin.numeric.arrays import Array
     from kin.read.step.curves import StepEdge, StepFile
     from kin.read.step.faces import Face
     from kin.read.step.part21 import Exchange
@@ -182,57 +181,26 @@ def _gap(face: Face) -> float:
 
 def _lies_left(face: Face) -> bool:
     """Whether a face lies on the left of its bounds, as seen from outside."""
-    sense = 1.0 if face.outward else -1.0
     match face.surface:
         case Patch():
             order = _rounds(face)
             first = order.index(0)
             turned = [*order[first:], *order[:first]]
             return turned == ([0, 1, 2, 3] if face.outward else [0, 3, 2, 1])
-        case Plane():
-            normal = sense * face.surface.normal
-            total = np.zeros(3)
-            for edge, forward in face.uses:
-                points = _points(edge, forward)
-                total += 0.5 * np.cross(points[:-1], points[1:]).sum(axis=0)
-            return bool(total @ normal > 0.0)
-        case RoundFace():
-            return sense * _unrolled(face) > 0.0
+        case Plane() | RoundFace():
+            return not face.inside_out
     return False
-
-
-def _unrolled(face: Face) -> float:
-    """Area, mm rad, within the bounds of an upright cylinder's face, unrolled; above 0 where it is on their left."""
-    total = 0.0
-    if isinstance(face.surface, RoundFace):
-        for edge, forward in face.uses:
-            points = _points(edge, forward)
-            angle = np.unwrap(np.arctan2(*(points[:, :2] - face.surface.centre).T[::-1]))
-            total -= float(np.sum(0.5 * (points[1:, 2] + points[:-1, 2]) * np.diff(angle)))
-    return total
 
 
 def _wall_area(face: Face) -> float:
     """Area of an upright face, mm^2, to that of chords."""
     if isinstance(face.surface, RoundFace):
-        return abs(_unrolled(face)) * face.surface.radius
+        return abs(face.unrolled) * face.surface.radius
     total = np.zeros(3)
     for edge, forward in face.uses:
-        points = _points(edge, forward)
+        points = points_along(edge, forward)
         total += 0.5 * np.cross(points[:-1], points[1:]).sum(axis=0)
     return float(np.linalg.norm(total))
-
-
-def _points(edge: StepEdge, forward: bool) -> Array:
-    """Points (k, 3) along an edge, in the sense of a bound."""
-    match edge.curve:
-        case Straight():
-            points = np.stack([edge.start, edge.end])
-        case Conic():
-            points = edge.curve.at(np.linspace(0.0, 1.0, 8 * NODES + 1))
-        case _:
-            points = edge.samples[::-1] if edge.curve.back else edge.samples
-    return points if forward else points[::-1]
 
 
 def _swept(edge: StepEdge, forward: bool) -> float:

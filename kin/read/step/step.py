@@ -253,6 +253,9 @@ class _Body:
     def faults(self) -> list[str]:
         """Faults in words, with their numbers: a closed solid whose faces look outward has none."""
         faults = edge_faults(self.faces)
+        faults += [
+            f"face #{face.number} lies on the wrong side of its bounds" for face in self.faces if face.inside_out
+        ]
         for lid in self.lids:
             z = lid.heights[0]
             normal = lid.surface.normal[2] if isinstance(lid.surface, Plane) else 0.0

@@ -17,6 +17,8 @@ from kin.read.files import kind_of
 from kin.read.step.part21 import exchange
 from kin.read.step.step import read_step
 
+EGG = [(0.0, -10.0), (30.0, -10.0), (10.0, 25.0), (-10.0, 25.0), (-30.0, -10.0), (0.0, -10.0)]
+
 
 def put(folder, text, name="part.step"):
     path = folder / name
@@ -65,14 +67,13 @@ def test_lines_and_arcs_whichever_way_their_circles_run(tmp_path, backwards):
 
 
 def test_a_swept_spline(tmp_path):
-    control = [(0.0, -10.0), (30.0, -10.0), (10.0, 25.0), (-10.0, 25.0), (-30.0, -10.0), (0.0, -10.0)]
-    solid = read_step(put(tmp_path, swept(control, None, 5)))
+    solid = read_step(put(tmp_path, swept(EGG, None, 5)))
     assert solid.faults == ()
     node, weight = np.polynomial.legendre.leggauss(20)
     t = 0.5 * (node + 1)
     basis = np.array([math.comb(5, k) * t**k * (1 - t) ** (5 - k) for k in range(6)])
     slope = np.array([math.comb(4, k) * t**k * (1 - t) ** (4 - k) for k in range(5)])
-    points, steps = np.array(control), 5 * np.diff(control, axis=0)
+    points, steps = np.array(EGG), 5 * np.diff(EGG, axis=0)
     (x, y), (u, v) = points.T @ basis, steps.T @ slope
     area = 0.25 * float(np.sum(weight * (x * v - y * u)))
     assert solid.contour.area == pytest.approx(area, rel=1e-12)
@@ -211,6 +212,22 @@ def test_faces_that_look_inward(tmp_path):
         put(tmp_path, lids.replace(f"{up}=DIRECTION('',(0.0,0.0,-1.0))", f"{up}=DIRECTION('',(0.0,0.0,1.0))"))
     )
     assert any("at z = 0 mm looks into the solid" in fault for fault in solid.faults)
+
+
+@pytest.mark.parametrize("part", [washer(), washer(seam=False), stadium(), swept(EGG, None, 5)])
+def test_each_face_that_is_turned_over_is_a_fault(tmp_path, part):
+    """Also one that goes all round, whose section is a whole circle either way."""
+    faces = list(re.finditer(r"(#\d+)=ADVANCED_FACE\(.*,\.([TF])\.\)", part))
+    assert len(faces) >= 3
+    assert read_step(put(tmp_path, part)).faults == ()
+    for face in faces:
+        start = face.start(2)
+        turned = f"{part[:start]}{'F' if face[2] == 'T' else 'T'}{part[start + 1 :]}"
+        try:
+            faults = read_step(put(tmp_path, turned)).faults
+        except ReadError as error:
+            faults = (error.message,)
+        assert any("wrong side of its bounds" in fault or "faces outward" in fault for fault in faults), face[1]
 
 
 def test_an_edge_that_two_faces_run_along_the_same_way(tmp_path):
