@@ -92,7 +92,10 @@ def _arguments(words: Sequence[str]) -> argparse.Namespace:
     answer, complaint = io.StringIO(), io.StringIO()
     try:
         with redirect_stdout(answer), redirect_stderr(complaint):
-            return _parser(words).parse_args(words)
+            parser = _parser(words)
+            if not words:
+                parser.error("name a command: camgeo --help lists them, camgeo new the recipes to start from")
+            return parser.parse_args(words)
     except SystemExit:
         for text, write in ((answer.getvalue(), say), (complaint.getvalue(), complain)):
             if text:

@@ -103,7 +103,8 @@ def _mixture_words(mixture: Mixture) -> str:
     """Words for a side found from its card: its polynomials' weights and powers, its angle, and what it misses."""
     shares = " + ".join(f"{weight:.4g} x {'-'.join(map(str, powers))}" for powers, weight in mixture.members)
     within = f" within {mixture.off:.2g} degrees" if mixture.off else ""
-    return f"the card is met{within} by {shares} over {math.degrees(mixture.side.half):.6g} degrees of the cam"
+    half = math.degrees(mixture.side.half)
+    return f"the card is met{within} by the polynomials (weight x powers) {shares} over {half:.6g} degrees of the cam"
 
 
 # --- in a recipe ------------------------------------------------------------------------------------------------------

@@ -243,6 +243,16 @@ def test_schema_of_a_camshaft(capsys: pytest.CaptureFixture[str]) -> None:
     assert set(shaft["properties"]["camshaft"]["properties"]) == {"shaft", "journals", "lobes", "engine"}
 
 
+def test_a_call_without_a_command_says_where_they_are_listed(capsys: pytest.CaptureFixture[str]) -> None:
+    with pytest.raises(SystemExit) as left:
+        main([])
+    said = capsys.readouterr().err
+    assert left.value.code == 2
+    assert "camgeo --help lists them, camgeo new" in said
+    assert main(["new"]) == 0
+    assert "disc-roller" in capsys.readouterr().out
+
+
 @pytest.mark.thin(2)
 @pytest.mark.parametrize("arguments", [[], ["export"], ["dance"], ["export", "x.yaml", "--tolerance", "-1"]])
 def test_a_wrong_call_exits_2(arguments: list[str]) -> None:

@@ -43,32 +43,49 @@ def design_checks(design: DrumDesign, figures: Sequence[Figure]) -> list[Check]:
         checks.append(Check(**{**vars(failed(LENGTH, why, unit="mm", limit=0.0)), "at": length.at}))
     if RIB in known:
         check = figure_check(RIB, known[RIB], 0.0, "at_least", at_unit="deg")
-        checks.append(Check(**{**vars(check), "ok": known[RIB].value > 0.0}))
-    wall, where = min(walls(design))
+        holds = known[RIB].value > 0.0
+        remedy = check.detail if holds else "give a larger cam.track.rib.distance, or a smaller roller"
+        checks.append(Check(**{**vars(check), "ok": holds, "detail": remedy}))
+    return [*checks, wall_check(design)]
+
+
+def wall_check(design: DrumDesign) -> Check:
+    """The thinnest wall of a drum against the least one of its recipe; what is missing is told with a remedy."""
+    wall, where, remedy = min(walls(design))
     least = design.recipe.part.wall
     holds = wall > 0.0 if least is None else wall >= least - ROUNDING
-    return [*checks, Check(LEAST_WALL, holds, wall, least or 0.0, "mm", sense="at_least", detail=where)]
+    if not holds:
+        lack, unit = in_units(design.recipe, (least or 0.0) - wall, "mm")
+        where += f": {remedy.format(f'by more than {lack:.6g} {unit}')}"
+    return Check(LEAST_WALL, holds, wall, least or 0.0, "mm", sense="at_least", detail=where)
 
 
-def walls(design: DrumDesign) -> list[tuple[float, str]]:
-    """Walls of a drum, mm, each with what it stands between; without a bore those of the ends alone."""
+def walls(design: DrumDesign) -> list[tuple[float, str, str]]:
+    """Walls of a drum, mm, each with what it stands between and how it grows; without a bore those of the ends alone.
+
+    The third of each is a remedy, in which braces stand for an amount such as `by more than 2 mm`.
+    """
     recipe, track = design.recipe, design.recipe.track
+    heights = "cam.pitch_height, cam.follower.arm.pivot" if recipe.swings else "cam.pitch_height"
     low, high = design.motion.range
     found = []
     for name, flank in design.flanks.items():
         if track.meets_lower_face(name):
-            found.append((flank.resting(low, recipe.radius), f"between the {track.noun} and the lower face"))
+            where = f"between the {track.noun} and the lower face"
+            found.append((flank.resting(low, recipe.radius), where, f"raise {heights} and part.length {{}}"))
         else:
             wall = recipe.height - flank.resting(high, recipe.radius)
-            found.append((wall, f"between the {track.noun} and the upper face"))
+            found.append((wall, f"between the {track.noun} and the upper face", "raise part.length {}"))
     if recipe.turns > 1:
         between = min(wall_between(design.flanks, r)[0] for r in (recipe.floor, recipe.radius))
         if math.isfinite(between):
-            found.append((between, "between neighbouring turns of the groove"))
+            found.append((between, "between neighbouring turns of the groove", "give more lift a turn"))
     if design.bore is not None:
         points = design.bore.outline.points
         reach = float(np.hypot(*points.T).max())
-        found.append((recipe.floor - reach, "between the bore and the floor"))
+        found.append(
+            (recipe.floor - reach, "between the bore and the floor", "raise cam.radius {}, or narrow the bore")
+        )
     return found
 
 

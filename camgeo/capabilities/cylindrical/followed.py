@@ -196,7 +196,7 @@ class FollowedDrum:
         if rows is None:
             return Segments(None, [], least, why)
         lines = known.lines()
-        lines.append(f"the programme is within {self.scale * self.programme.greatest:.2g} {self.told} of the motion")
+        lines.append(f"these laws are within {self.scale * self.programme.greatest:.2g} {self.told} of the motion")
         return Segments(rows, lines, known.zero)
 
     def _at(self, place: int) -> float:
@@ -332,7 +332,7 @@ class FollowedDrum:
         )
         rows += [f"  {line}" for line in told["strokes"]]
         if told["no_programme"]:
-            rows.append(f"  no programme: {told['no_programme']}")
+            rows.append(f"  no laws: {told['no_programme']}")
         return "\n".join([*rows, *(f"  {remark}" for remark in told["remarks"])])
 
     # --- files --------------------------------------------------------------------------------------------------------

@@ -66,12 +66,14 @@ class OtherInputs:
     follow         the motion by all arguments of `camgeo.follow`, also those that are not given, in a namespace; raises
                    CallError where there is none, TypeError for an argument of its own of a wrong type
     solids         remedy for a solid that is no disc; empty where no such solid is followed
+    drawings       remedy for a contour that goes round no shaft; empty where no such contour is followed
     """
 
     option: str = ""
     add_arguments: Callable[[argparse.ArgumentParser], None] = NO_CHECK
     follow: Callable[[argparse.Namespace], FollowedOver] | None = None
     solids: str = ""
+    drawings: str = ""
     alone: Mapping[str, tuple[str, object]] = EMPTY
 
 

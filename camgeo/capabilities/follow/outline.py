@@ -331,10 +331,12 @@ def _require_same_unit(path: Path, units: float | None, stated: float | None) ->
 
 
 def _remedy(chains: Sequence[ClosedContour]) -> str:
-    """Remedy in words: the middles of round holes as places of the shaft."""
+    """Remedy in words: the middles of round holes as places of the shaft, and how cams without one are followed."""
     boxes = [(chain.contour, chain.contour.box) for chain in chains[1:]]
     middles = [(hole, 0.5 * (box.x_min + box.x_max), 0.5 * (box.y_min + box.y_max)) for hole, box in boxes]
     places = [f"{x:.6g},{y:.6g}" for hole, x, y in middles if circle_about(hole, x, y) is not None]
-    if not places:
-        return "; give at, such as --at 120,85"
-    return f"; give at, such as the middle of a hole: {' or '.join(places[:MOST_NAMED])}, as --at {places[0]}"
+    ways = ["give at, such as --at 120,85"]
+    if places:
+        ways = [f"give at, such as the middle of a hole: {' or '.join(places[:MOST_NAMED])}, as --at {places[0]}"]
+    ways += [OTHER_INPUTS[answering].drawings for answering in OTHER_INPUTS.answering()]
+    return f"; {', or '.join(filter(None, ways))}"

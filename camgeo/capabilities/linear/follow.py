@@ -269,4 +269,10 @@ def _outline(path: Path, unit: float | None, gap: float | None) -> Contour:
     raise CallError(f"{escaped(str(path))}: a drawing or a solid is expected")
 
 
-ANSWERS = OtherInputs(option="linear", add_arguments=_add_arguments, follow=_follow, alone={"--lean": ("lean", 0.0)})
+ANSWERS = OtherInputs(
+    option="linear",
+    add_arguments=_add_arguments,
+    follow=_follow,
+    alone={"--lean": ("lean", 0.0)},
+    drawings="follow a plate on a slide over its travel: --linear 0,120",
+)

@@ -52,8 +52,8 @@ def table_rows(section: dict[str, Any], *, everything: bool) -> list[tuple[str, 
             outliers = surface["outliers"]
             rows += [(f"  outlier, line {point['line']}", f"{point['residual']:+.4g} {unit}") for point in outliers]
         point, wave, over = surface["least_fault_point"], surface["least_fault_span"], 2.0 * surface["span_deg"]
-        faults = f"{point:.2g} at one point, {wave:.2g} over {over:.3g} degrees"
-        rows.append(("  least fault that is found", f"{faults} {unit}"))
+        faults = f"{point:.2g} {unit} at one point, {wave:.2g} {unit} over {over:.3g} degrees"
+        rows.append(("  least fault that is found", faults))
     # profile, causes and cure of each disc
     for disc in section["discs"]:
         ending = f" of {disc['name']}" if len(section["discs"]) > 1 else ""

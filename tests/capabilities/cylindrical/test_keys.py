@@ -26,7 +26,7 @@ from capabilities.cylindrical.made_drums import (
 )
 
 import camgeo
-from camgeo.capabilities.cylindrical.checks_of import design_checks, walls
+from camgeo.capabilities.cylindrical.checks_of import design_checks, wall_check, walls
 from camgeo.capabilities.cylindrical.figures import figures_of
 from camgeo.capabilities.cylindrical.flank import Flank
 from camgeo.recipe.recipe import load_text
@@ -274,13 +274,43 @@ def test_a_length_of_0_fails() -> None:
 def test_walls_of_every_track() -> None:
     """What is left beside the track, and round the bore, is a check: the thinnest wall is named."""
     assert min(walls(design_of(GROOVE)))[0] == pytest.approx(10.0)
-    groove = {where: wall for wall, where in walls(design_of(GROOVE))}
+    groove = {where: wall for wall, where, _ in walls(design_of(GROOVE))}
     assert groove["between the bore and the floor"] == pytest.approx(37.5 - math.hypot(12 + 3.3, 4))
-    assert {b: a for a, b in walls(design_of(RIB))}["between the rib and the upper face"] == pytest.approx(
+    assert {b: a for a, b, _ in walls(design_of(RIB))}["between the rib and the upper face"] == pytest.approx(
         125 - (40 + 25 + 40 - 10)
     )
     assert min(walls(design_of(BOTTOM)))[0] == pytest.approx(10.0)
-    assert {b: a for a, b in walls(design_of(TOP))}["between the flank and the lower face"] == pytest.approx(10.0)
+    assert {b: a for a, b, _ in walls(design_of(TOP))}["between the flank and the lower face"] == pytest.approx(10.0)
+
+
+@pytest.mark.parametrize(
+    ("drum", "thin", "keys"),
+    [
+        (GROOVE, ("length: 80", "length: 60"), ("length: 60",)),
+        (GROOVE, ("pitch_height: 20", "pitch_height: 6"), ("pitch_height: 6", "length: 80")),
+        (GROOVE, ("bore: 24", "bore: 76"), ("radius: 50",)),
+        (RIB, ("length: 125", "length: 90"), ("length: 90",)),
+    ],
+)
+def test_a_wall_that_is_missing_says_what_makes_it(drum: str, thin: tuple[str, str], keys: tuple[str, ...]) -> None:
+    """The remedy is tried: with the keys raised by the amount told, and a little more, the same wall stands."""
+    text = changed(drum, thin).replace(", keyway: din6885", "").replace(", from: 38", "")
+    failing = wall_check(design_of(text))
+    assert not failing.ok
+    more = float(failing.detail.partition("by more than ")[2].split()[0]) + 0.01
+    assert more == pytest.approx(0.01 - (failing.value or 0.0), abs=1e-4)
+    for key in keys:
+        name, _, value = key.partition(": ")
+        assert name in failing.detail
+        text = changed(text, (key, f"{name}: {float(value) + more:.6f}"))
+    assert wall_check(design_of(text)).ok
+
+
+def test_a_rib_that_is_gone_says_what_makes_it() -> None:
+    design = design_of(changed(RIB, ("distance: 50", "distance: 22")))
+    (rib,) = [each for each in design_checks(design, figures_of(design)) if each.name == "rib-thickness"]
+    assert not rib.ok
+    assert "give a larger cam.track.rib.distance" in rib.detail
 
 
 def test_a_roller_beside_the_blank_carries_nothing() -> None:

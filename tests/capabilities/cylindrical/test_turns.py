@@ -251,11 +251,11 @@ def test_random_tracks_are_metal_where_no_pin_has_been(seed: int) -> None:
 def test_the_wall_between_turns_is_the_lift_of_a_turn_less_the_groove() -> None:
     """In the stretch of constant velocity helices of the lead a are p cos a apart, less the groove's width."""
     design = design_of(SPIRAL)
-    (found,) = [wall for wall, where in walls(design) if "between neighbouring turns" in where]
+    (found,) = [wall for wall, where, _ in walls(design) if "between neighbouring turns" in where]
     rate = 60.0 / (1080.0 - 70.0)  # mm a degree
     lead = math.atan(math.degrees(rate) / design.recipe.floor)
     assert found == pytest.approx(360.0 * rate * math.cos(lead) - 8.0, abs=2e-3)
-    assert not [where for _, where in walls(screw()) if "between neighbouring turns" in where]  # they end in points
+    assert not [where for _, where, _ in walls(screw()) if "between neighbouring turns" in where]  # they end in points
 
 
 def test_rows_of_the_table_that_a_crossing_cuts_away_are_empty() -> None:

@@ -57,6 +57,13 @@ def test_the_library_follows_a_plate(wedge: str) -> None:
         followed.page()
 
 
+def test_a_plate_that_is_followed_as_a_disc_is_told_the_option(wedge: str, capsys: pytest.CaptureFixture[str]) -> None:
+    assert main(["follow", wedge, "--roller", "0"]) == 2
+    option = capsys.readouterr().err.rpartition("over its travel: ")[2].split()
+    assert option == ["--linear", "0,120"]
+    assert main(["follow", wedge, "--roller", "0", *option]) == 0
+
+
 def test_an_arm_swings(wedge: str, capsys: pytest.CaptureFixture[str]) -> None:
     """On the level an arm of 30 about a pivot 55 high has its roller of 5 at 45: asin(-1/3)."""
     assert main(["follow", wedge, "--linear", "40,60", "--roller", "5", "--arm", "55,30"]) == 0
