@@ -132,7 +132,8 @@ class Swept:
 
     def along(self, points: Array) -> Array:
         """Directions (k, 2) of the curve near points (k, 2)."""
-        return self.arcs.tangents(0.5 * self.arcs.length)[nearest(self.arcs, points)[0]]
+        along: Array = self.arcs.tangents(0.5 * self.arcs.length)[nearest(self.arcs, points)[0]]
+        return along
 
 
 Surface: TypeAlias = "Plane | RoundFace | Tube | Swept | Patch"
