@@ -29,9 +29,9 @@ from camgeo.capabilities.cylindrical.ways import (
 from camgeo.common.rounding import downward, upward
 from camgeo.files.gcode import SHARE, comment, feed_text, plain
 from camgeo.fit.bound import Bound
-from kin.cylindrical.program import Cutting
 from kin.numeric.records import replace
 from kin.read.gcode import LARGEST
+from kin.turned.checks import Cutting
 
 if TYPE_CHECKING:
     from collections.abc import Iterator

@@ -50,8 +50,8 @@ from camgeo.capabilities.cylindrical.ways import Cutter, Way, radially_off, set_
 from camgeo.cli.main import main
 from camgeo.common.clock import Clock
 from camgeo.schema.errors import RecipeErrors
-from kin.cylindrical import cutters
 from kin.numeric.records import replace
+from kin.turned import cutters
 
 if TYPE_CHECKING:
     from collections.abc import Callable
