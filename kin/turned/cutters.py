@@ -86,7 +86,7 @@ class Lifts(Protocol):
 
 
 class Track(Protocol):
-    """A flank of a track, and the roller without ends that leaves it, whose axis is square to that of the turning body."""
+    """A flank of a track in a turning body, and the roller without ends that leaves it, its axis square to that."""
 
     @property
     def side(self) -> Side:
@@ -300,7 +300,7 @@ def _left(
     h1, h2 = 0.25 * np.diff(theta), 0.25 * np.diff(rho)[:, None]
     bend, widest = tolerance * (ACROSS + ALONG), [0.0, 0.0]
     others = _Others(gauge, points)
-    inside = _corners_of(cells_within(points.z, gauge.ends))
+    inside = corners_of(cells_within(points.z, gauge.ends))
 
     def far(one: Pass) -> tuple[bool, float]:
         """Passes along the other flank come last, deeper ones behind those that are less deep: they take less."""
@@ -452,7 +452,7 @@ def cells_within(z: Array, ends: tuple[float, float]) -> Mask:
     return np.asarray((_over(z, np.maximum) >= ends[0]) & (_over(z, np.minimum) <= ends[1]))
 
 
-def _corners_of(cells: Mask) -> Mask:
+def corners_of(cells: Mask) -> Mask:
     """Points (m, n) that are corners of any of some cells (m - 1, n - 1)."""
     found = np.zeros((cells.shape[0] + 1, cells.shape[1] + 1), dtype=np.bool_)
     for rows in (slice(1, None), slice(None, -1)):

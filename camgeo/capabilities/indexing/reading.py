@@ -7,9 +7,10 @@ from typing import TYPE_CHECKING, Any, Literal
 
 from camgeo.capabilities.indexing.forms import Barrel, Globoid
 from camgeo.capabilities.indexing.index_recipe import Drive, IndexRecipe
-from camgeo.capabilities.indexing.keys import FILES, FLOOR_GAP, RECIPE
+from camgeo.capabilities.indexing.keys import EXAMPLE, FILES, FLOOR_GAP, NO_PROGRAM, RECIPE, SOLID_OF_IT
 from camgeo.capabilities.indexing.turrets import BarrelTurret, GloboidTurret, Roller, reaching
 from camgeo.common.rounding import downward, upward
+from camgeo.formats.turned import programs_in
 from camgeo.motions.motion import check_filled
 from camgeo.part import bore
 from camgeo.part.keyway import FEATURE as KEYWAY
@@ -34,11 +35,12 @@ if TYPE_CHECKING:
 ANGLES = 1  # what a disc would be judged at: such a cam is judged at all angles
 NOT_YET = {
     "cam.sizing": "give the radius of the blank, turret.radius and turret.roller",
-    "manufacture": "give stl, 3mf or ply to a machine's own software",
+    "manufacture": f"a program of a barrel has its cutter and feeds beside its axes, {{gcode: {{{EXAMPLE}}}}}",
     "made": "measured points of an indexing cam are not judged",
 }
 """Keys of what is not made, each with what is."""
-FORMATS_NOT_YET = ("svg", "step", "gcode")
+FORMATS_NOT_YET = ("svg", "step")
+RIDGE = 0.02  # mm by which what two cuts along the groove clear is wider than that
 NOTHING = 1e-9  # mm: a length below it is none
 APART = 0.8  # of the distance in a globoid's throat from a roller's axis to the next one, that a roller may fill
 LEAST_ROLLER = 0.01  # of a barrel's radius or a globoid's distance: the time of a proof grows with its inverse
@@ -96,6 +98,7 @@ def _check(values: Values, reader: Reader) -> None:
         return
     _check_roller(values, reader)
     _check_developments(values, reader)
+    _check_programs(values, reader)
     _check_limits(values, reader)
 
 
@@ -241,6 +244,39 @@ def _check_developments(values: Values, reader: Reader) -> None:
                 remedy = f"give one from {_shown(low, reader)} to {_shown(high, reader)}"
                 where = f"{file['path']}.{file['kind']}.at[{i}]"
                 reader.fault_at(where, "no flank there", _shown(radius, reader), remedy)
+
+
+def _check_programs(values: Values, reader: Reader) -> None:
+    """Note programs of a globoid, what a program lacks, and a cutter that does not leave the flanks, or the groove."""
+    cam, turret = values["cam"], values["cam"]["turret"]
+    if "globoid" in cam:
+        for file in values.get("export", {}).get("files", []):
+            if FILES[file["kind"]].program:
+                reader.fault_at(file["path"], NO_PROGRAM, None, SOLID_OF_IT)
+        return
+    play = turret.get("clearance", 0.0) - turret.get("preload", 0.0)
+    smaller = turret["roller"] + min(play, 0.0)
+    narrowest = turret["roller"] + 0.5 * play + RIDGE
+    for file in programs_in(values, reader, EXAMPLE):
+        path, told = f"{file['path']}.{file['kind']}", _shown(file["cutter"], reader)
+        if "Y" not in file["axes"]:
+            problem = "a barrel's rollers stand beside its axis, and so does the cutter"
+            reader.fault_at(f"{path}.axes", problem, ", ".join(file["axes"]), "give [X, Y, A]")
+        allowance = file.get("allowance", 0.0)
+        widest = 2.0 * (smaller - allowance)
+        if file["cutter"] > widest + NOTHING and widest <= narrowest:
+            remedy = f"give an allowance below {_less(smaller - 0.5 * narrowest, reader)}"
+            reader.fault_at(f"{path}.allowance", "leaves no room for a cutter", _shown(allowance, reader), remedy)
+        elif file["cutter"] > widest + NOTHING:
+            what = "the smaller roller less the allowance on both flanks" if allowance else "the smaller roller"
+            problem, remedy = (
+                f"a cutter wider than {what} cuts the flanks away",
+                f"give at most {_shown(widest, reader)}",
+            )
+            reader.fault_at(f"{path}.cutter", problem, told, remedy)
+        elif file["cutter"] < narrowest - NOTHING:
+            remedy = f"give at least {_more(narrowest, reader)}"
+            reader.fault_at(f"{path}.cutter", "does not clear the groove along both flanks", told, remedy)
 
 
 def _check_limits(values: Values, reader: Reader) -> None:

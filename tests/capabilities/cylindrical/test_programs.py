@@ -2,7 +2,7 @@
 """Programs of drums: written, read by a few lines of their own, held against brute force, judged, refused.
 
 Holds: camgeo.capabilities.cylindrical.program, camgeo.capabilities.cylindrical.ways,
-camgeo.capabilities.cylindrical.angles, camgeo.capabilities.cylindrical.bends.
+camgeo.fit.parted, camgeo.capabilities.cylindrical.bends.
 """
 
 from __future__ import annotations
