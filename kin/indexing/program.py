@@ -43,7 +43,7 @@ if TYPE_CHECKING:
 
     from kin.indexing.intent import IndexIntent, Limits
     from kin.law.contacts import Side
-    from kin.numeric.arrays import Array
+    from kin.numeric.arrays import Array, Mask
     from kin.turned.checks import Cutting
     from kin.turned.cutters import Along, Left
     from kin.turned.guide import Axis, Swing
@@ -112,8 +112,8 @@ class _Way:
     def enclosure(self, lower: Array, upper: Array, order: int) -> tuple[Array, Array]:
         """Balls mid +- rad (order + 1, n) of the advance and its derivatives between angles (n,) of one turn each."""
         turn = np.floor(0.5 * (lower + upper) / TURN)
-        ends = (np.clip(each - TURN * turn, 0.0, TURN) for each in (lower, upper))
-        mid, rad = self.rollers.intent.law.enclosure(*ends, order)
+        first, last = (np.clip(each - TURN * turn, 0.0, TURN) for each in (lower, upper))
+        mid, rad = self.rollers.intent.law.enclosure(first, last, order)
         mid = mid.copy()
         mid[0] += self.rollers.intent.pitch * turn
         return mid, rad
@@ -317,9 +317,9 @@ class _Seen:
 
     track: _Track
     left: Left
-    cells: Array
-    asked: Array
-    there: Array
+    cells: Mask
+    asked: Mask
+    there: Mask
     cost: Array
 
     @staticmethod
