@@ -23,10 +23,13 @@ from support.cases import few
 import camgeo
 from camgeo.capabilities.indexing.making import foresee, make
 from camgeo.capabilities.indexing.program import write_program
-from camgeo.capabilities.indexing.verdicts import judged_file
+from camgeo.capabilities.indexing.verdicts import intended, judged_file
 from camgeo.cli.main import main
 from camgeo.common.clock import Clock
+from camgeo.machining.turned import cutting_of
 from camgeo.schema.errors import RecipeErrors
+from kin.indexing.intent import Limits
+from kin.indexing.program import verify_program
 from kin.numeric.records import replace
 
 if TYPE_CHECKING:
@@ -46,10 +49,11 @@ part: {{length: 80, bore: 24}}
 export: {{tolerance: 0.01, files: [{{gcode: {{{OPTIONS}}}}}]}}
 """
 QUICK = changed(
-    EIGHT, ("stops: 8", "stops: 12"), ("rise: 45, over: 180", "rise: 30, over: 60"), ("dwell: 180", "dwell: 300")
-)
-QUICK = changed(
-    QUICK, ("roller: 9", "roller: 6"), ("cutter: 18", "cutter: 12"), ("tolerance: 0.01", "tolerance: 0.002")
+    EIGHT,
+    ("stops: 8", "stops: 6"),
+    ("rise: 45, over: 180", "rise: 60, over: 150"),
+    ("dwell: 180", "dwell: 210"),
+    ("tolerance: 0.01", "tolerance: 0.002"),
 )
 
 
@@ -228,15 +232,14 @@ def test_planted_faults_are_refused(tmp_path: Path, fault: str) -> None:
 
 @pytest.mark.costly("two programs judged at a fine tolerance")
 def test_words_too_coarse_and_a_smaller_cutter_are_refused(tmp_path: Path) -> None:
-    """A rounded to 0.01 degrees moves the cutter by up to 5 um where the turret is fast, against a tolerance of 2."""
+    """What rounding A to 0.01 degrees may take moves the cutter by 4 um where the turret is fast; 2 are permitted."""
     words = written(QUICK)[1]
     assert judged(tmp_path, QUICK, words).ok
-    assert failing(judged(tmp_path, QUICK, altered(words, "A", lambda a: round(a, 2)))) & {"contour", "ways"}
+    assert failing(judged(tmp_path, QUICK, altered(words, "A", lambda a: a + 0.005))) & {"contour", "ways"}
     design, path = written(QUICK)[0], tmp_path / "small.ngc"
-    path.write_text(words.replace("diameter 12", "diameter 11.95"), "ascii")
-    request = design.recipe.export.files[0]
-    small = replace(request, own=request.own | {"cutter": 11.95})
-    verdict = judged_file(design, path, small, 0.01)
+    path.write_text(words.replace("diameter 18", "diameter 17.95"), "ascii")
+    cutting = cutting_of(design.recipe.export.files[0], 13.0)
+    verdict = verify_program(path, intended(design), replace(cutting, radius=8.975), Limits(0.01))
     assert failing(verdict) >= {"contour", "form-closure"}
     contours = [check.value for check in verdict.checks if check.name == "contour"]
     assert contours == pytest.approx([0.025, 0.025], abs=0.003)
