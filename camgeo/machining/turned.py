@@ -235,12 +235,14 @@ class _Written:
         yield f"G0 {self._place(rows[0])}"
         low, high = self._text(cut.z / self.mm), self._text(self.safe / self.mm)
         yield f"G1 Z{low} F{self._feed(self.own['plunge'], (float(high) - float(low)) * self.mm)}"
-        for k, (before, after) in enumerate(pairwise(rows)):
+        first = True
+        for before, after in pairwise(rows):
             if before == after:
                 continue
             turn, along, beside = (b - a for a, b in zip(before, after, strict=True))
             far = math.hypot(math.radians(turn) * self.blank, along * self.mm, beside * self.mm)
-            feed = f" F{self._feed(self.own['feed'], far)}" if self.inverse or k == 0 else ""
+            feed = f" F{self._feed(self.own['feed'], far)}" if self.inverse or first else ""
+            first = False
             yield f"G1 {self._place(after)}{feed}"
             self.blocks += 1
         yield f"G0 Z{high}"

@@ -150,7 +150,12 @@ def milled(rng: Random, number: int) -> Attack:
             own.pop(key, None)
     options = ", ".join(f"{key}: {value}" for key, value in own.items())
     text = text.replace("files: [stl]", f"files: [{{gcode: {{{options}}}}}]")
-    return Attack(f"milled indexing cam {number}", ("export", "index.yaml"), {"index.yaml": text.encode()}, (0, 2))
+
+    def judge(done: Done, _: Path) -> list[str]:  # 1 where a check of the cam fails, and not of the program
+        return [f"verdict: {done.err[:200]}"] if ".ngc)" in done.err else []
+
+    name = f"milled indexing cam {number}"
+    return Attack(name, ("export", "index.yaml"), {"index.yaml": text.encode()}, (0, 1, 2), judge)
 
 
 def slipped(rng: Random, number: int) -> Attack:

@@ -354,6 +354,7 @@ def test_random_barrels_are_milled(tmp_path: Path, seed: int) -> None:
     preload = 0.01 if "preload" in text else 0.0
     cutter = 2.0 * (roller - preload) * rng.choice([1.0, 1.0, 0.95, 0.8])
     own = f"axes: [X, Y, A], cutter: {cutter!r}, feed: 300, plunge: 60, spindle: 2500, safe_height: 5"
+    own += rng.choice(["", ", feed_mode: per-minute"])
     text = changed(text, ("[stl]", f"[{{gcode: {{{own}}}}}]"))
     try:
         design = design_of(text)
