@@ -13,6 +13,9 @@ if TYPE_CHECKING:
     from camgeo.recipe.extension import Alteration
     from camgeo.schema.reader import Reader, Values
 
+INVERSE, BY_MINUTE = "inverse-time", "per-minute"  # feeds of a program for a machine that turns its work
+LEAST_PLACES, MOST_PLACES = 2, 9  # decimals that a recipe may ask of such a program
+
 
 @dataclass(frozen=True)
 class Manufacture:

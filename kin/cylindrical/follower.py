@@ -12,17 +12,17 @@ import math
 from functools import cached_property
 from typing import TYPE_CHECKING
 
-from kin.cylindrical.guide import Slide, Swing
 from kin.law.bounds import cubic_cells
 from kin.numeric.angles import TURN
 from kin.numeric.records import dataclass
+from kin.turned.guide import Slide, Swing
 
 if TYPE_CHECKING:
-    from kin.cylindrical.guide import Guide, Unit
     from kin.law.contacts import Side
     from kin.law.piecewise import Piecewise
     from kin.numeric.arrays import Array
     from kin.numeric.elementary import Jet
+    from kin.turned.guide import Guide, Unit
 
     Number = float | Array | Jet
 

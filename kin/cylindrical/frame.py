@@ -20,10 +20,10 @@ from kin.numeric.elementary import Jet, atan2, sqrt
 
 if TYPE_CHECKING:
     from kin.cylindrical.follower import DrumFollower
-    from kin.cylindrical.guide import Axis
     from kin.law.contacts import Side
     from kin.law.piecewise import Side as KnotSide
     from kin.numeric.arrays import Array
+    from kin.turned.guide import Axis
 
 STEPS = 60  # of the fixed point that finds a place along the roller, at most
 SETTLED = 1e-15  # of a radius

@@ -47,11 +47,11 @@ if TYPE_CHECKING:
 
     from kin.cylindrical.edges import Peak, Seen
     from kin.cylindrical.faces import Stands
-    from kin.cylindrical.guide import Unit
     from kin.cylindrical.intent import Developed, DrumIntent, Limits
     from kin.cylindrical.roller import Gauge
     from kin.numeric.arrays import Array, Mask
     from kin.read.mesh.checked import CheckedMesh
+    from kin.turned.guide import Unit
 
 WATERTIGHT, MOTION, PLAY, CONTOUR, ENDS = "watertight", "motion", "form-closure", "contour", "ends"
 CROSSINGS, SHOE = "crossings", "shoe"

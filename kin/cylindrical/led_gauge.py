@@ -1,7 +1,7 @@
 """A roller that any guide leads, a cylinder or a cone, without ends on one flank of a drum.
 
 Of a point at y across the roller's axis, X along it and the height z, F is how far the roller has to give way, mm along
-the path of its axis: that between its place and the one at which it touches the point (`kin.cylindrical.guide`). While
+the path of its axis: that between its place and the one at which it touches the point (`kin.turned.guide`). While
 the shaft turns by d theta the point moves by (-X d theta, 0) across, so that with a, n, T and u as they stand there
 
     F' = side lever S' + (X n_y + y g)/cos a
@@ -28,9 +28,9 @@ from kin.numeric.records import dataclass
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
-    from kin.cylindrical.guide import Axis, Guide, Touch
     from kin.cylindrical.roller import Along, Worst
     from kin.numeric.arrays import Array, Mask
+    from kin.turned.guide import Axis, Guide, Touch
 
 OFF = 0.1  # of the roller's radius: bounds hold for points that are no farther from the flank
 UPRIGHT = 1.5  # rad: no bound is had where normals may lean more against the roller's path

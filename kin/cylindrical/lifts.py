@@ -36,6 +36,24 @@ class Lifts:
         """Angle, rad, after which the lift repeats."""
         return TURN * self.turns
 
+    @property
+    def span(self) -> tuple[float, float]:
+        """Angles, rad, between which there is all of the motion: a period from 0."""
+        return 0.0, self.period
+
+    @property
+    def breaks(self) -> Array:
+        """Angles (k,) of the span at which a derivative may jump."""
+        return np.asarray(np.mod(self.law.breaks, self.period))
+
+    def enclosure(self, lower: Array, upper: Array, order: int) -> tuple[Array, Array]:
+        """Balls mid +- rad (order + 1, n) of the lift and its derivatives between angles (n,), rad, of the span."""
+        return self.law.enclosure(lower, upper, order)
+
+    def repeats(self, turns: int) -> bool:
+        """Whether the roller is in the same place after so many whole turns."""
+        return turns % self.turns == 0
+
     def degrees(self, angle: float) -> float:
         """An angle, rad, as degrees of the period, from 0 up to 360 for each of its turns."""
         return degrees_over(angle, self.turns)

@@ -2,7 +2,7 @@
 
 The cutter's path is what the control makes of the blocks: all axes move evenly between them. The metal is what no
 position of the cutter takes away, held against the exact flanks over all shaft angles, from the roller's inner end to
-the blank (`kin.cylindrical.cutters`), over all turns after which the motion repeats. A flank that is shortened by
+the blank (`kin.turned.cutters`), over all turns after which the motion repeats. A flank that is shortened by
 undercut, or has corners, is judged by the path alone: a cutter as large as the roller leaves what the rollers leave,
 but for the error of its own path.
 """
@@ -10,72 +10,41 @@ but for the error of its own path.
 from __future__ import annotations
 
 import math
-import re
 from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
-from kin.cylindrical.cutters import END, finest_on, left_on
 from kin.cylindrical.gauge import gauges_of
 from kin.cylindrical.intent import Groove
 from kin.cylindrical.judge import CONTOUR, Judged, assured, motion_check
-from kin.cylindrical.turned import passes_of, read_turned
 from kin.cylindrical.verdict import DrumVerdict, FlankVerdict, MotionError
 from kin.numeric.check import ROUNDING, Check, about, at_most, failed
 from kin.numeric.errors import UnsettledError
 from kin.numeric.lengths import UNIT, length_words
-from kin.numeric.records import dataclass, replace
+from kin.numeric.records import replace
 from kin.read.checks import count_check, unread_check
 from kin.read.errors import ReadError
+from kin.turned.checks import Work, astray, cleared_check, cutter_check, depth_check, feed_check, rapid_check
+from kin.turned.cutters import END, finest_on, left_on
+from kin.turned.moves import passes_of, read_turned
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
     from pathlib import Path
 
-    from kin.cylindrical.cutters import Left
-    from kin.cylindrical.guide import Unit
     from kin.cylindrical.intent import DrumIntent, Limits
     from kin.cylindrical.lifts import Lifts
     from kin.cylindrical.roller import Gauge
-    from kin.cylindrical.turned import Pass, TurnedProgram
-    from kin.numeric.arrays import Array, Indices, Mask
+    from kin.numeric.arrays import Array, Indices
+    from kin.turned.checks import Cutting
+    from kin.turned.cutters import Left
+    from kin.turned.guide import Unit
+    from kin.turned.moves import Pass, TurnedProgram
 
 SAME = 1e-9  # mm: sizes that differ by less are one
-JOINT = 1e-9  # rad: angles that differ by less are one
 LEAN = 1e-2  # by which the slope of a flank may be more between two angles
-FEED = 0.01  # of a feed, by which it may differ
 COARSE, FAR = 20.0, 3.0  # times the tolerance: what a first look is good for, and what is refused at it
-LEAST = 1e-6  # of the cutter's diameter, by which what a program names may differ
-_CUTTER = re.compile(r"^cutter: diameter ([0-9.]+)(?: at its end, half angle ([0-9.]+) degrees)?")
-LEAST_TAPER = 1e-6  # degrees, by which the half angle of a cutter may differ
 PATH = 0.02  # of the tolerance, by which a path may stray between two places that are looked at
-
-
-@dataclass(frozen=True)
-class Cutting:
-    """How a program should cut, mm.
-
-    radius        of the cutter, of one that tapers at its end
-    feed          mm a minute along the path on the blank's radius
-    inverse       whether every block states the inverse of its time, G93
-    depth_of_cut  greatest depth of a pass
-    taper         half angle of the cutter, rad, thicker away from its end; 0 of a cylinder
-    """
-
-    radius: float
-    feed: float
-    inverse: bool
-    depth_of_cut: float
-    taper: float = 0.0
-
-    @property
-    def growth(self) -> float:
-        """How fast the cutter's radius grows along its axis."""
-        return math.tan(self.taper)
-
-    def beyond(self, gauge: Gauge, rho: float, end: float) -> float:
-        """By how much the cutter is larger than a roller at a place rho, its end at another, mm."""
-        return self.radius + (rho - end) * self.growth - gauge.size(rho)
 
 
 class _Path(NamedTuple):
@@ -110,20 +79,21 @@ def judged_passes(
     program: TurnedProgram, passes: list[Pass], drum: DrumIntent, cutting: Cutting, limits: Limits
 ) -> tuple[list[Check], list[FlankVerdict]]:
     """Checks of a program, not mirrored, and verdicts on the flanks that its passes leave."""
+    work = Work(drum.radius, drum.floor, gauges_of(drum)[0].lifts.period)
     checks = [
-        _cutter(program, cutting),
-        _rapid(program, drum),
+        cutter_check(program, cutting),
+        rapid_check(program, work),
         _ways(program, passes, drum),
-        _feed(program, drum, cutting),
+        feed_check(program, work, cutting),
     ]
     if not passes:
         return [*checks, failed(CONTOUR, "the program cuts nothing", unit="mm", limit=limits.tolerance)], []
-    checks.append(_depth(program, passes, drum, cutting, limits))
+    checks.append(depth_check(program, passes, work, cutting, limits.tolerance))
     if not all(check.ok for check in checks[1:3]):
         unseen = failed(CONTOUR, "what is left is not looked at on such ways", unit="mm", limit=limits.tolerance)
         return [*checks, unseen], []
     if isinstance(drum.track, Groove):
-        checks.append(_cleared(passes, drum, cutting.radius))
+        checks.append(cleared_check(passes, work, cutting.radius))
     flanks = []
     try:
         job = Judged(gauges_of(drum), drum, limits, ROUNDING * (drum.radius + drum.length))
@@ -155,7 +125,7 @@ def _flank(job: Judged, gauge: Gauge, passes: list[Pass], cutting: Cutting) -> t
 
     gauge.demand_bounded()
     deepest = min(one.z for one in passes)
-    beyond = [cutting.beyond(gauge, rho, deepest) for rho in (gauge.inner, drum.radius)]
+    beyond = [_beyond(cutting, gauge, rho, deepest) for rho in (gauge.inner, drum.radius)]
     if max(beyond) > max(tolerance * gauge.spread, SAME):
         across = f"{length_words(2.0 * cutting.radius, '.9g')} {UNIT} across{' at its end' if cutting.taper else ''}"
         return unknown(f"a cutter {across} is wider than the roller")
@@ -244,7 +214,7 @@ def _by_path(job: Judged, gauge: Gauge, passes: list[Pass], cutting: Cutting) ->
     off = [path_off(one, gauge, PATH * tolerance) for one in own]
     beside, remainder = max(each.beside for each in off), max(each.remainder for each in off)
     # a cutter whose cone lies elsewhere than the roller's is smaller, or larger
-    beyond = max(abs(cutting.beyond(gauge, rho, one.z)) for one in whole for rho in (gauge.inner, drum.radius))
+    beyond = max(abs(_beyond(cutting, gauge, rho, one.z)) for one in whole for rho in (gauge.inner, drum.radius))
     errors = [(-each.least, each.least_at) for each in off] + [(each.most, each.most_at) for each in off]
     worst, at = max(errors)
     detail = f"by its path, which is off by {length_words(worst, '.3g')} {UNIT} along the drum"
@@ -321,48 +291,15 @@ def off_path(one: Pass, lifts: Lifts, level: float) -> _Path:
     return _Path(float(off[least]), float(looked[least]), float(off[most]), float(looked[most]), beside)
 
 
-# --- how it goes there ------------------------------------------------------------------------------------------------
-
-
-def _cutter(program: TurnedProgram, cutting: Cutting) -> Check:
-    """Check the diameter of the cutter that the program names at its head, if it names one."""
-    named = [(float(found[1]), float(found[2] or 0.0)) for text in program.comments if (found := _CUTTER.match(text))]
-    if not named:
-        return Check("cutter", True, None, None, "mm", detail="the program names no cutter")
-    diameter, expected = named[0][0] * program.units_mm, 2.0 * cutting.radius
-    taper = math.degrees(cutting.taper)
-    if abs(named[0][1] - taper) > LEAST_TAPER:
-        why = f"the program names a half angle of {named[0][1]:.9g} degrees, {taper:.9g} are expected"
-        return failed("cutter", why, unit="mm", limit=LEAST * expected)
-    names = f"the program names {length_words(diameter, '.9g')} {UNIT} across"
-    detail = f"{names}, {length_words(expected, '.9g')} are expected"
-    return at_most("cutter", abs(diameter - expected), LEAST * expected, "mm", detail=detail)
-
-
-def _rapid(program: TurnedProgram, drum: DrumIntent) -> Check:
-    """Check that nothing moves fast below the blank's radius, but for the cutter that is drawn out."""
-    bad = []
-    for move in program.moves:
-        low = min(move.start.z, move.end.z)
-        out = move.end.z > move.start.z and move.start._replace(z=0.0) == move.end._replace(z=0.0)
-        if move.rapid and low < drum.radius and not out:
-            bad.append(f"line {move.line} moves fast at Z {length_words(low)} {UNIT}")
-    return count_check("rapid", bad)
+def _beyond(cutting: Cutting, gauge: Gauge, rho: float, end: float) -> float:
+    """By how much the cutter is larger than a roller at a place rho, its end at another, mm."""
+    return cutting.radius + (rho - end) * cutting.growth - gauge.size(rho)
 
 
 def _ways(program: TurnedProgram, passes: Sequence[Pass], drum: DrumIntent) -> Check:
     """Check that the cutter stays out of the metal, goes down at rest, and that a pass turns the drum one way."""
     low = [move for move in program.moves if min(move.start.z, move.end.z) < drum.radius]
-    bad = [
-        f"line {move.line} goes down while another axis moves"
-        for move in low
-        if not move.rapid and move.start.z != move.end.z and move.start._replace(z=0.0) != move.end._replace(z=0.0)
-    ]
-    bad += [
-        f"the drum turns to and fro in the pass from line {one.line}"
-        for one in passes
-        if (np.diff(one.a) < 0.0).any() and (np.diff(one.a) > 0.0).any()
-    ]
+    bad = astray(program, passes, drum.radius)
     ends = np.array([(*move.start, *move.end) for move in low]).reshape(-1, 4)
     deep = np.maximum(ends[:, 2], drum.floor)
     within = [gauge.size(deep) - gauge.side * (ends[:, 0] - gauge.axis(ends[:, 3])) > 0.0 for gauge in gauges_of(drum)]
@@ -370,109 +307,3 @@ def _ways(program: TurnedProgram, passes: Sequence[Pass], drum: DrumIntent) -> C
     if not free.all():
         bad.append(f"line {low[int(np.argmin(free)) // 2].line} stands in the metal")
     return count_check("ways", bad)
-
-
-def _feed(program: TurnedProgram, drum: DrumIntent, cutting: Cutting) -> Check:
-    """Check the speed of every cutting block on the blank's radius."""
-    worst, line = 0.0, 0
-    for move in program.moves:
-        start, end = move.start, move.end
-        if move.rapid or start.z != end.z or start.z >= drum.radius or start == end:
-            continue
-        if move.inverse != cutting.inverse:
-            stated, wanted = ("G93", "G94") if move.inverse else ("G94", "G93")
-            return failed("feed", f"line {move.line} moves by {stated}, {wanted} is expected", limit=FEED)
-        far = math.hypot(end.x - start.x, end.y - start.y, drum.radius * (end.a - start.a))
-        off = abs((move.feed * far if move.inverse else move.feed) / cutting.feed - 1.0)
-        if off > worst:
-            worst, line = off, move.line
-    detail = f"line {line}, as a share of the feed" if line else "as a share of the feed"
-    return at_most("feed", worst, FEED, "", detail=detail)
-
-
-def _depth(program: TurnedProgram, passes: Sequence[Pass], drum: DrumIntent, cutting: Cutting, limits: Limits) -> Check:
-    """Check that the deepest passes reach the floor, and that none goes too far below those before it."""
-    deepest = min(program.moves, key=lambda move: move.end.z)
-    if not abs(deepest.end.z - drum.floor) <= limits.tolerance:
-        ends = f"from line {deepest.line} on the cutter ends at a radius of {length_words(deepest.end.z)} {UNIT}"
-        why = f"{ends}, the floor has {length_words(drum.floor)} {UNIT}"
-        return failed("depth", why, unit="mm", limit=cutting.depth_of_cut)
-    period, worst, line = gauges_of(drum)[0].lifts.period, 0.0, passes[0].line
-    ways: list[Pass] = []
-    deep: list[float] = []  # how far down each has been gone
-    near: dict[tuple[int, int], Mask] = {}
-    for one in passes:
-        own = next((k for k, way in enumerate(ways) if one.same_way(way)), len(ways))
-        if own == len(ways):
-            ways.append(one)
-            deep.append(drum.radius)
-            angles = _between(one, passes, period)
-            near |= {(own, k): _near(one, way, angles, period, cutting.radius) for k, way in enumerate(ways)}
-            near |= {
-                (k, own): _near(way, one, _between(way, passes, period), period, cutting.radius)
-                for k, way in enumerate(ways[:own])
-            }
-        before = np.min([np.where(near[own, k], z, drum.radius) for k, z in enumerate(deep)], axis=0)
-        if float(before.max()) - one.z > worst:
-            worst, line = float(before.max()) - one.z, one.line
-        deep[own] = min(deep[own], one.z)
-    slack = limits.tolerance
-    return at_most("depth", worst, cutting.depth_of_cut, "mm", detail=f"the pass from line {line}", slack=slack)
-
-
-def _cleared(passes: Sequence[Pass], drum: DrumIntent, cutter: float) -> Check:
-    """Check that passes at the floor lie so near to one another that nothing stands between."""
-    low, period = min(one.z for one in passes), gauges_of(drum)[0].lifts.period
-    ways: list[Pass] = []
-    for one in passes:
-        if one.z <= low + END and float(np.ptp(one.a)) and not any(one.same_way(way) for way in ways):
-            ways.append(one)
-    worst = 0.0
-    if ways:
-        ends = np.array([end for way in ways for end in (way.a.min(), way.a.max())])
-        # a way may begin or end between the points of all others
-        angles = np.concatenate([*(way.a for way in ways), ends - 2.0 * JOINT, ends + 2.0 * JOINT])
-        angles = np.unique(np.mod(angles, period))
-        rows = np.array([row for way in ways for row in _met(way, angles, period)])
-        order = np.argsort(rows[:, 0], axis=0)  # places that a way does not have come last
-        apart = np.hypot(*(np.diff(np.take_along_axis(rows[:, k], order, axis=0), axis=0) for k in (0, 1)))
-        worst = float(apart[np.isfinite(apart)].max(initial=0.0))
-    detail = "between the centres of neighbouring passes, against the cutter's diameter"
-    return at_most("cleared", worst, 2.0 * cutter, "mm", detail=detail)
-
-
-def _met(way: Pass, angles: Array, period: float) -> list[tuple[Array, Array]]:
-    """Places (n,), (n,) of a way at angles, rad, in each period in which it meets any of them; nan at the others."""
-    low, high = float(way.a.min()), float(way.a.max())
-    first, last = math.floor((low - angles.max()) / period), math.ceil((high - angles.min()) / period)
-    found = [_places(way, angles + turn * period) for turn in range(first, last + 1)]
-    return [places for places in found if np.isfinite(places[0]).any()]
-
-
-def _places(way: Pass, angles: Array) -> tuple[Array, Array]:
-    """Places (n,), (n,) of a way along the drum and beside its axis, mm, at angles, rad; nan beyond its ends."""
-    order = slice(None) if way.a[-1] >= way.a[0] else slice(None, None, -1)
-    a = way.a[order]
-    beyond = (angles < a[0] - JOINT) | (angles > a[-1] + JOINT)
-    x, y = (np.where(beyond, np.nan, np.interp(angles, a, row[order])) for row in (way.x, way.y))
-    return x, y
-
-
-def _between(one: Pass, passes: Sequence[Pass], period: float) -> Array:
-    """Angles of a way between its points and the ends of all passes, or the one at which it stands."""
-    low, high = float(one.a.min()), float(one.a.max())
-    if low == high:
-        return np.array([low])
-    ends = np.unique([end for each in passes for end in (each.a.min(), each.a.max())])
-    turns = np.arange(math.floor((low - ends[-1]) / period), math.ceil((high - ends[0]) / period) + 1)
-    ends = (ends + turns[:, None] * period).ravel()
-    joints = np.unique(np.concatenate([one.a, ends[(ends > low) & (ends < high)]]))
-    return np.asarray(0.5 * (joints[1:] + joints[:-1]))
-
-
-def _near(one: Pass, other: Pass, angles: Array, period: float, radius: float) -> Mask:
-    """Whether another way goes by no farther off than `radius`, mm, at angles (n,) of one, rad."""
-    (x, y), near = _places(one, angles), np.zeros(len(angles), dtype=np.bool_)
-    for other_x, other_y in _met(other, angles, period):
-        near |= np.hypot(other_x - x, other_y - y) <= radius
-    return near

@@ -21,18 +21,18 @@ from typing import TYPE_CHECKING, NamedTuple, TypeVar
 
 import numpy as np
 
-from kin.cylindrical.guide import Slide
 from kin.cylindrical.lifts import widened
 from kin.numeric.angles import TURN
 from kin.numeric.records import dataclass
+from kin.turned.guide import Slide
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
-    from kin.cylindrical.guide import Axis, Guide
     from kin.cylindrical.lifts import Lifts
     from kin.law.contacts import Side
     from kin.numeric.arrays import Array, Indices, Mask
+    from kin.turned.guide import Axis, Guide
 
 Along = TypeVar("Along", float, "Array")
 
@@ -132,6 +132,11 @@ class Gauge:
     def spread(self) -> float:
         """How fast the roller's radius grows along its axis."""
         return 0.0
+
+    @property
+    def ends(self) -> tuple[float, float]:
+        """No ends along z: the whole flank is within the drum."""
+        return -math.inf, math.inf
 
     def size(self, along: Along) -> Along:
         """Radius of the roller, mm, at places along it, mm."""

@@ -36,13 +36,13 @@ if TYPE_CHECKING:
     from collections.abc import Sequence
 
     from kin.cylindrical.follower import Arm
-    from kin.cylindrical.guide import Guide
     from kin.cylindrical.intent import Track
     from kin.cylindrical.roller import Gauge
     from kin.cylindrical.unknown import Column, Drum
     from kin.cylindrical.wound import Winding
     from kin.law.contacts import Side
     from kin.numeric.arrays import Array, Indices, Mask
+    from kin.turned.guide import Guide
 
 Kind = Literal["groove", "rib", "top", "bottom"]
 ENDS: tuple[Kind, ...] = ("top", "bottom")

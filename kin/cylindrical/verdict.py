@@ -7,10 +7,10 @@ from typing import TYPE_CHECKING
 from kin.numeric.records import dataclass
 
 if TYPE_CHECKING:
-    from kin.cylindrical.guide import Unit
     from kin.numeric.arrays import Array
     from kin.numeric.check import Check
     from kin.read.mesh.mesh import Mesh
+    from kin.turned.guide import Unit
 
 
 @dataclass(frozen=True)

@@ -19,6 +19,7 @@ from typing import TYPE_CHECKING, Protocol
 import numpy as np
 
 from kin.numeric.records import dataclass
+from kin.turned.guide import Swing
 
 if TYPE_CHECKING:
     from kin.law.contacts import Side
@@ -49,6 +50,12 @@ class Form(Protocol):
 
     def developed(self, radius: float) -> float:
         """Depth of the cylinder of a radius, mm; raises ValueError for a form whose layers are no cylinders."""
+
+    def guide(self, height: float, start: float) -> Swing:
+        """What leads a roller at the angle `start`, rad, the turret's centre at a height, mm.
+
+        Raises ValueError for rollers that do not keep their direction.
+        """
 
     def demand(self, stops: int, roller: float, ends: tuple[float, float]) -> None:
         """Raise ValueError for a turret that such a form cannot have; `ends` are the heights of both faces."""
@@ -163,6 +170,10 @@ class Barrel:
     def developed(self, radius: float) -> float:
         """Depth of a cylinder below the blank."""
         return self.radius - radius
+
+    def guide(self, height: float, start: float) -> Swing:
+        """An arm as long as the pitch radius."""
+        return Swing(self.pitch, self.offset, height, self.sense, start)
 
     def demand(self, stops: int, roller: float, _ends: tuple[float, float]) -> None:
         """Raise ValueError where the rollers on the turret overlap."""
@@ -292,6 +303,10 @@ class Globoid:
     def developed(self, _radius: float) -> float:
         """Raise ValueError: a torus does not unroll."""
         raise ValueError("a globoid has no development")
+
+    def guide(self, _height: float, _start: float) -> Swing:
+        """Raise ValueError: radial rollers turn with the turret."""
+        raise ValueError("the rollers of a globoid do not keep their direction")
 
     def demand(self, stops: int, roller: float, ends: tuple[float, float]) -> None:
         """Raise ValueError where rollers overlap in the throat, or the throat is no longer there at the ends."""

@@ -123,7 +123,7 @@ def judge_mesh(read: CheckedMesh, intent: IndexIntent, limits: Limits, kind: str
             seen.append(own)
         one, other = seen
         if one is not None and other is not None:
-            play, check = play_of(job, one, other)
+            play, check = play_of(job.rollers, limits, job.slack, (one, other))
             checks.append(check)
         area = 0.5 * float(np.sqrt(sum(part * part for part in read.mesh.area_vectors)).sum())
         exact = exact_volume(job.rollers)
@@ -301,9 +301,9 @@ def motion_check(rollers: Rollers, motion: MotionError, limits: Limits, slack: f
     return unlimited(check) if loose else check
 
 
-def play_of(job: _Judged, lower: Held, upper: Held) -> tuple[Play, Check]:
+def play_of(rollers: Rollers, limits: Limits, slack: float, flanks: tuple[Held, Held]) -> tuple[Play, Check]:
     """Play of the turret between all flanks, and the check on that of the gauges, which should fit without any."""
-    rollers, limits = job.rollers, job.limits
+    lower, upper = flanks
     count = len(lower.at)
     own = -np.degrees(lower.own + upper.own)
     least, most = int(own.argmin()), int(own.argmax())
@@ -311,7 +311,7 @@ def play_of(job: _Judged, lower: Held, upper: Held) -> tuple[Play, Check]:
     play = Play(float(own[least]), places[0], float(own[most]), places[1], count)
     cost = math.degrees(sum(by_error(rollers, side) for side in SIDES.values()))
     given = None if limits.play is None else math.degrees(limits.play)
-    limit, room = limit_of(lambda e: e * cost, given, limits.tolerance, job.slack)
+    limit, room = limit_of(lambda e: e * cost, given, limits.tolerance, slack)
     told = f"the turret's own play is {play.least:.6g} to {play.most:.6g} deg"
     if play.least < 0.0:
         told += f": it is pinched by up to {-play.least:.3g} deg"

@@ -38,12 +38,17 @@ class Turning:
 
     def at(self, theta: Array) -> tuple[Array, Array]:
         """Angle of a roller, rad, and its slope (n,) each at angles of the cam (n,), rad, folded to one turn."""
+        advance, slope, _ = self.moved(theta)
+        return self.start + advance, slope
+
+    def moved(self, theta: Array) -> tuple[Array, Array, Array]:
+        """Advance, rad, with its slope and bend (n,) each at angles of the cam (n,), rad, folded to one turn."""
         nodes, cubics = self._cells
         folded = theta - TURN * np.floor(theta / TURN)
         cell = np.minimum(np.searchsorted(nodes, folded, side="right") - 1, len(nodes) - 2)
         x = folded - nodes[cell]
         a, b, c, d = (row[cell] for row in cubics)
-        return self.start + a + x * (b + x * (c + x * d)), b + x * (2.0 * c + 3.0 * x * d)
+        return a + x * (b + x * (c + x * d)), b + x * (2.0 * c + 3.0 * x * d), 2.0 * c + 6.0 * x * d
 
     @cached_property
     def fastest(self) -> tuple[Array, Array]:

@@ -61,7 +61,7 @@ class FlankVerdict:
     name            "lower" or "upper", or the line's layer
     motion          of the turret on it; of an upper flank that of its gauges, larger by the clearance
     measured_error  greatest distance of the file's surface from the exact flank, mm
-    pieces          triangles of the file on this flank; None of a line
+    pieces          triangles of the file on this flank; None of a line, and of a program
     """
 
     name: str
@@ -74,10 +74,11 @@ class FlankVerdict:
 class IndexVerdict:
     """Results for a file.
 
-    kind    name of the file's format: stl, ply, 3mf, dxf
+    kind    name of the file's format: stl, ply, 3mf, dxf, gcode
     checks  of a solid: watertight, blank, floor, ends, bore, contour and motion (one for each flank), form-closure,
-            volume; of a development: units, contour and motion (one for each line); or a single one that says why the
-            file cannot be read. Places are shaft angles, degrees
+            volume; of a development: units, contour and motion (one for each line); of a program: cutter, rapid, ways,
+            feed, depth, cleared, contour and motion (one for each flank), form-closure; or a single one that says why
+            the file cannot be read. Places are shaft angles, degrees
     flanks  lower and upper; none where the file cannot be read
     play    of the turret between its rollers' flanks
     units   mm in a unit of the file as it was read

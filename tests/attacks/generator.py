@@ -83,6 +83,7 @@ WAYS: tuple[Callable[[Random, int], Attack], ...] = (
     indexing.stepped,  # needs: indexing
     indexing.unrolled,  # needs: indexing
     indexing.slipped,  # needs: indexing
+    indexing.milled,  # needs: indexing, milling
 )
 """Ways to attack, in turn."""
 

@@ -24,6 +24,7 @@ REMEDY = re.compile(
     r"index\.yaml:\d+:\d+: (?P<path>[\w.]+): (?P<problem>[^,;\d]+)[^;]*; .*?"
     r"(?P<word>less than|at most|more than|at least|between) (?P<size>-?[\d.e+-]+)(?: \w+ and (?P<most>-?[\d.e+-]+))?"
 )
+NEEDED = ("axes", "cutter", "feed", "plunge", "spindle", "safe_height")
 SLIPS = (
     ("radius:", "raduis:"),
     ("depth", "deep"),
@@ -139,6 +140,37 @@ class _Led(Rollers):
         turns = np.floor(theta / (2.0 * np.pi))
         values = self.law.derivatives(theta - 2.0 * np.pi * turns, 0)[0]
         return np.asarray(self.start + turns * 2.0 * np.pi / self.stops + values)
+
+
+def milled(rng: Random, number: int) -> Attack:
+    """A random cam as a program with random words: it is made, or refused with a reason, and nothing else."""
+    inch = rng.random() < 0.5
+    mm = 25.4 if inch else 1.0
+    text = random_indexer(rng, rng.choice(["barrel"] * 5 + ["globoid"]), inch=inch, ccw=rng.random() < 0.5)
+    roller = number_after(text, "roller: ")
+    own = {
+        "axes": rng.choice(["[X, A]", *["[X, Y, A]"] * 6, "[A, X, Z, Y]", "[X]"]),
+        "cutter": f"{roller * rng.choice([2.0, 2.0, 1.998, 1.9, 1.5, 0.9, 2.1])!r}",
+        "feed": f"{rng.choice([*[300.0] * 6, 1e-6, 1e7]) / mm!r}",
+        "plunge": f"{60 / mm!r}",
+        "spindle": "2500",
+        "safe_height": f"{rng.choice([*[5.0] * 6, 1e-7]) / mm!r}",
+        "depth_of_cut": f"{rng.uniform(0.5, 20.0) / mm!r}",
+        "allowance": f"{rng.choice([0.2, 0.2, 3.0]) / mm!r}",
+        "decimals": rng.choice(["3", "5", "9"]),
+        "feed_mode": rng.choice(["inverse-time", "per-minute"]),
+    }
+    for key in ("allowance", "decimals", "feed_mode", "depth_of_cut", rng.choice(list(own))):
+        if rng.random() < (0.6 if key not in NEEDED else 0.1):
+            own.pop(key, None)
+    options = ", ".join(f"{key}: {value}" for key, value in own.items())
+    text = text.replace("files: [stl]", f"files: [{{gcode: {{{options}}}}}]")
+
+    def judge(done: Done, _: Path) -> list[str]:  # 1 where a check of the cam fails, and not of the program
+        return [f"verdict: {done.err[:200]}"] if ".ngc)" in done.err else []
+
+    name = f"milled indexing cam {number}"
+    return Attack(name, ("export", "index.yaml"), {"index.yaml": text.encode()}, (0, 1, 2), judge)
 
 
 def slipped(rng: Random, number: int) -> Attack:

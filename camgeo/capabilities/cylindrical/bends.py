@@ -16,8 +16,8 @@ from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
-from camgeo.capabilities.cylindrical.angles import looks_of
 from camgeo.fit.facets import facets_off, facets_width
+from camgeo.fit.parted import looks_of
 from kin.numeric.interval import Ball, asin, atan2, sin_cos
 
 if TYPE_CHECKING:

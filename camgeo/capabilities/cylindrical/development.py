@@ -11,12 +11,12 @@ from typing import TYPE_CHECKING, Literal, NamedTuple
 
 import numpy as np
 
-from camgeo.capabilities.cylindrical.angles import LOOKS, looks_of, parted
 from camgeo.capabilities.cylindrical.bends import bends
 from camgeo.capabilities.cylindrical.keys import OUTER, PITCH
 from camgeo.capabilities.cylindrical.undercut import cut_at
 from camgeo.fit.bound import Bound
 from camgeo.fit.nodes import ToleranceError
+from camgeo.fit.parted import LOOKS, looks_of, parted
 from kin.cylindrical.intent import Developed
 from kin.numeric.angles import TURN
 from kin.numeric.interval import Ball

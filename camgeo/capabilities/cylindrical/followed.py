@@ -21,12 +21,12 @@ if TYPE_CHECKING:
 
     from camgeo.common.units import Units
     from camgeo.schema.change import Value
-    from kin.cylindrical.guide import Unit
     from kin.cylindrical.running import Run
     from kin.cylindrical.unknown import Drum
     from kin.follower.measured import MeasuredDwell
     from kin.follower.recognised import Programme
     from kin.numeric.arrays import Array
+    from kin.turned.guide import Unit
 
 Flank = Literal["lower", "upper", "middle"]
 

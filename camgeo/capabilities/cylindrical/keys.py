@@ -5,6 +5,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from camgeo.formats.options import RECIPE_UNITS, SOLID_UNITS, TOLERANCE
+from camgeo.formats.turned import program_files
 from camgeo.motions.inputs import Input
 from camgeo.motions.motion import motion_field
 from camgeo.part import bore
@@ -14,12 +15,11 @@ from camgeo.recipe.export import export_of
 from camgeo.recipe.figure_bounds import limits_of
 from camgeo.recipe.figures import LEAST_WALL, PRESSURE_ANGLE
 from camgeo.recipe.keys import CORE
-from camgeo.recipe.machining import MANUFACTURE, MOST_RPM
+from camgeo.recipe.machining import MOST_RPM
 from camgeo.recipe.materials import material
 from camgeo.recipe.radii import radii_form
 from camgeo.registry.formats import FORMATS, Form
 from camgeo.registry.slot import NO_CHECK
-from camgeo.schema.errors import quote
 from camgeo.schema.fields import MOST, Field, FieldTable, Kind, OwnForm, length, mapping
 from camgeo.schema.json_schema import number_schema
 from camgeo.schema.read_scalar import read_numeric
@@ -277,73 +277,6 @@ def _surfaces(name: str, *options: Field) -> Format:
     return replace(_mesh(name, *options), forms={"": Form(pieces="patches")}, check=NO_CHECK)
 
 
-AXES = (("X", "A"), ("X", "Y", "A"))
-"""Axes that a program may move beside Z."""
-
-
-def _read_axes(reader: Reader, field: Field, node: Node, path: str) -> tuple[str, ...] | None:
-    """Read the axes of a machine; None after a fault."""
-    words = tuple(item.text.upper() if isinstance(item, Scalar) else "" for item in reader.items(field, node, path, 4))
-    chosen = tuple(word for word in words if word != "Z")
-    found = next((axes for axes in AXES if sorted(axes) == sorted(chosen)), None)
-    if words and found is None:
-        remedy = "give [X, A], or [X, Y, A] for a machine that moves across the drum, too"
-        reader.fault(node.mark, path, "not the axes of such a machine", quote(", ".join(words)), remedy)
-    return found
-
-
-def _axes_schema(_: Field) -> Schema:
-    return {"type": "array", "items": {"enum": ["X", "Y", "Z", "A"]}, "minItems": 2, "maxItems": 4}
-
-
-_AXES: OwnForm[Reader] = OwnForm("a list of axes", "a list of axes such as [X, A]", _read_axes, _axes_schema)
-INVERSE, BY_MINUTE = "inverse-time", "per-minute"
-LEAST_PLACES, MOST_PLACES = 2, 9  # decimals that a recipe may ask of a program
-PROGRAM = (
-    Field(
-        "axes",
-        Kind.OWN,
-        "axes that move beside Z: X along the drum, A about it, Y across it",
-        required=True,
-        form=_AXES,
-    ),
-    length(
-        "cutter", "diameter of the cutter, of one that tapers at its end; at most that of the roller", required=True
-    ),
-    Field(
-        "taper",
-        Kind.ANGLE,
-        "half angle of a cutter that tapers, thicker away from its end; at most that of the roller",
-        default="a cylinder",
-        above=0,
-        at_most=STEEPEST_CONE,
-    ),
-    length("feed", "feed along the path on the blank's radius, a minute", required=True),
-    length("plunge", "feed towards the drum's axis, a minute", required=True),
-    replace(MANUFACTURE.field("spindle"), about="speed of the spindle, turns a minute", required=True),
-    length("depth_of_cut", "greatest depth of one pass", default="the depth of the track"),
-    length("safe_height", "height above the blank at which the cutter moves fast", required=True),
-    length("allowance", "metal that a last pass takes off each flank", default="no such pass"),
-    Field(
-        "feed_mode",
-        Kind.CHOICE,
-        "whether each block states the inverse of its time, G93, or the program one feed, G94",
-        default=INVERSE,
-        choices=(INVERSE, BY_MINUTE),
-    ),
-    Field(
-        "decimals",
-        Kind.INTEGER,
-        "decimals of the axes' words",
-        default="as many as the tolerance asks for",
-        at_least=LEAST_PLACES,
-        at_most=MOST_PLACES,
-    ),
-    RECIPE_UNITS,
-    TOLERANCE,
-)
-NEEDED = ("axes", "cutter", "feed", "plunge", "spindle", "safe_height")
-"""Options that a program cannot do without."""
 FILES: dict[str, Format] = {
     **{name: _mesh(name, SOLID_UNITS, TOLERANCE) for name in ("stl", "ply", "3mf")},
     "step": _surfaces("step", SOLID_UNITS, TOLERANCE),
@@ -363,11 +296,17 @@ FILES: dict[str, Format] = {
         TOLERANCE,
         contour=True,
     ),
-    **{
-        name: replace(record, options=FieldTable(PROGRAM), check=NO_CHECK)
-        for name, record in FORMATS.items()
-        if record.program
-    },
+    **program_files(
+        "diameter of the cutter, of one that tapers at its end; at most that of the roller",
+        Field(
+            "taper",
+            Kind.ANGLE,
+            "half angle of a cutter that tapers, thicker away from its end; at most that of the roller",
+            default="a cylinder",
+            above=0,
+            at_most=STEEPEST_CONE,
+        ),
+    ),
     "csv": _tables(),
     "html": replace(FORMATS["html"], options=FieldTable(())),
 }

@@ -6,15 +6,14 @@ from functools import partial
 from typing import TYPE_CHECKING
 
 from camgeo.capabilities.cylindrical.design import in_recipe
-from camgeo.capabilities.cylindrical.program import cutting_of
 from camgeo.capabilities.cylindrical.solid import drum_mesh
 from camgeo.capabilities.cylindrical.verdicts import intended, judged_file
-from camgeo.common.rounding import upward
 from camgeo.common.units import UNIT_MM
 from camgeo.files.errors import demand_package
 from camgeo.files.mesh import Item
 from camgeo.fit.bound import Bound
 from camgeo.formats.glb import COLOURS, Actor, steady_turn, write_glb
+from camgeo.machining.turned import cutting_of, demand_judged
 from camgeo.measures.file_result import FileResult
 from camgeo.output.extension import MAKING, numbers_of
 from camgeo.output.own_kind import Made, judged_made
@@ -49,12 +48,8 @@ def _demand_judged(design: DrumDesign, request: FileRequest) -> None:
     from kin.cylindrical.program import finest_told
 
     recipe = design.recipe
-    finest, tolerance = finest_told(intended(design), cutting_of(design, request)), recipe.tolerance(request)
-    if tolerance < finest:
-        where = recipe.field_of(request) if request.tolerance is not None else "export.tolerance"
-        remedy = f"give at least {upward(finest / recipe.mm, 2)} {recipe.units}"
-        problem = "what a program of this drum leaves is not judged so finely"
-        raise recipe.error(where, problem, f"{tolerance / recipe.mm:.9g} {recipe.units}", remedy)
+    finest = finest_told(intended(design), cutting_of(request, recipe.track.depth))
+    demand_judged(recipe, request, finest, "a program of this drum")
 
 
 def make(design: DrumDesign, clock: Clock, request: FileRequest, path: Path) -> Made[DrumVerdict]:

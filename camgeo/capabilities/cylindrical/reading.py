@@ -7,9 +7,10 @@ from typing import TYPE_CHECKING, Literal
 
 from camgeo.capabilities.cylindrical.drum_recipe import Drive, DrumRecipe, Roller
 from camgeo.capabilities.cylindrical.guide import Arm, Carriage
-from camgeo.capabilities.cylindrical.keys import APEX, FILES, FLOOR_GAP, NEEDED, RECIPE
+from camgeo.capabilities.cylindrical.keys import APEX, FILES, FLOOR_GAP, RECIPE
 from camgeo.capabilities.cylindrical.tracks import End, Groove, Rib
 from camgeo.common.rounding import downward
+from camgeo.formats.turned import programs_in
 from camgeo.motions.motion import check_filled
 from camgeo.part.keyway import check_round
 from camgeo.recipe.export import build_export, check_files
@@ -17,7 +18,6 @@ from camgeo.recipe.figure_bounds import check_bounds
 from camgeo.recipe.materials import check_materials
 from camgeo.recipe.own_kind import NotYet, begin, common_values, entry_at, finish, round_part
 from camgeo.recipe.radii import check_radii
-from camgeo.schema.fields import either
 from kin.numeric.angles import TURN
 
 if TYPE_CHECKING:
@@ -40,8 +40,6 @@ NOT_YET = NotYet(
 )
 EXAMPLE = "axes: [X, A], cutter: 20, feed: 300, plunge: 60, spindle: 2500, safe_height: 5"
 REFUSE = "undercut: refuse, as a cut ends in a sharp edge"
-LEAST_TOLD = {"feed": 1e-3, "plunge": 1e-3, "safe_height": 1e-3, "allowance": 1e-4, "depth_of_cut": 1e-4}
-"""Least figures of a program, in the recipe's unit: bounds against slips, far below what any machine keeps to."""
 RIDGE = 0.02  # mm by which what two cuts along a groove clear is wider than the groove
 NOTHING = 1e-9  # mm: a length below it is none
 NOTHING_MORE = 1e-7  # of the size of a cone, that a figure may be rounded by
@@ -215,18 +213,8 @@ def _check_programs(values: Values, reader: Reader) -> None:
     whole = _roller(cam, floor)
     roller = whole.size(floor)
     clearance = track.get("clearance", 0.0) if kind == "groove" else 0.0
-    for file in values.get("export", {}).get("files", []):
+    for file in programs_in(values, reader, EXAMPLE):
         path = f"{file['path']}.{file['kind']}"
-        if not FILES[file["kind"]].program:
-            continue
-        if "axes" not in file:  # the format's word alone
-            remedy = f"give {either(NEEDED, 'and')}: {{gcode: {{{EXAMPLE}}}}}"
-            reader.fault_at(file["path"], "a program needs its machine and cutter", None, remedy)
-            continue
-        for key, least in LEAST_TOLD.items():
-            if key in file and file[key] < least * reader.mm:
-                remedy = f"give at least {least:g} {reader.units}"
-                reader.fault_at(f"{path}.{key}", "too little for a program", reader.shown(file[key]), remedy)
         if file.get("taper", 0.0) > whole.taper + SAME_TAPER:
             problem, own = "a cutter tapers at most as its roller", math.degrees(file["taper"])
             most = downward(math.degrees(whole.taper), 6)

@@ -6,8 +6,8 @@ from typing import TYPE_CHECKING, Any
 
 from camgeo.capabilities.cylindrical.development import developed
 from camgeo.capabilities.cylindrical.keys import DEVELOPMENT, FILES
-from camgeo.capabilities.cylindrical.program import cutting_of
 from camgeo.common.units import UNIT_MM
+from camgeo.machining.turned import cutting_of
 from camgeo.measures.units import in_units
 from camgeo.part.as_intent import holes_of
 from camgeo.part.body import Body
@@ -89,7 +89,7 @@ def _judged_program(design: DrumDesign, path: Path, request: FileRequest | None,
     if asked is None:
         remedy = "give export: {files: [{gcode: {axes: [X, A], cutter: 20, ...}}]}: a program is judged by its cutter"
         raise recipe.error("export.files", "no program is asked for", None, remedy)
-    return verify_program(path, intended(design), cutting_of(design, asked), limits)
+    return verify_program(path, intended(design), cutting_of(asked, recipe.track.depth), limits)
 
 
 # --- in a report ------------------------------------------------------------------------------------------------------

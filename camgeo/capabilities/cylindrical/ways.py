@@ -34,9 +34,9 @@ from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
-from camgeo.capabilities.cylindrical.angles import looks_of
 from camgeo.capabilities.cylindrical.bends import bends_on, contact_turns, ways_bend
 from camgeo.capabilities.cylindrical.flank import distance
+from camgeo.fit.parted import looks_of
 from kin.numeric.interval import Ball
 from kin.numeric.records import dataclass, replace
 

@@ -79,19 +79,17 @@ class FormRules(ABC):
             elif "to" in given and begin < high:
                 at, remedy = f"{path}.to", _bearing(begin, high, reader)
             else:
-                at, remedy = "cam.depth", f"give more than {_more(FLOOR_GAP + self._rim(roller), reader)}"
+                at, remedy = "cam.depth", f"give more than {more(FLOOR_GAP + self._rim(roller), reader)}"
             reader.fault_at(at, "the roller bears nowhere", None, remedy)
         room = self._room(roller)
         if not roller.radius < room:
             problem = "neighbouring rollers of the turret touch one another"
-            remedy = f"give less than {_less(room, reader)}, or fewer stops"
+            remedy = f"give less than {less(room, reader)}, or fewer stops"
             reader.fault_at(f"{path}.roller", problem, reader.shown(roller.radius), remedy)
         least = turret.form.least_roller
         if roller.radius < least:
             problem = f"too small beside the cam: it is less than {100.0 * LEAST_ROLLER:g} percent of {self.size}"
-            remedy = f"give at least {_more(least, reader)}" + (
-                "" if least < room else f", with a larger {self.larger}"
-            )
+            remedy = f"give at least {more(least, reader)}" + ("" if least < room else f", with a larger {self.larger}")
             reader.fault_at(f"{path}.roller", problem, reader.shown(roller.radius), remedy)
 
     @abstractmethod
@@ -137,7 +135,7 @@ class BarrelRules(FormRules):
         reader, depth, most = self.reader, self.cam["depth"], self.form["radius"] - self._largest
         if not depth < most:
             problem = "the floor is no farther from the axis than the radius of the roller"
-            remedy = f"give less than {_less(most, reader)}, or a smaller roller"
+            remedy = f"give less than {less(most, reader)}, or a smaller roller"
             remedy = remedy if most > NOTHING else "give a smaller roller, or a larger blank"
             reader.fault_at("cam.depth", problem, reader.shown(depth), remedy)
 
@@ -180,7 +178,7 @@ class GloboidRules(FormRules):
         least = form["radius"] + self.cam["depth"] + self._largest
         if not form["distance"] > least:
             problem = "the floor is no farther from the cam's axis than the radius of the roller"
-            remedy = f"give more than {_more(least, reader)}, or a smaller globoid.radius or depth"
+            remedy = f"give more than {more(least, reader)}, or a smaller globoid.radius or depth"
             reader.fault_at("cam.globoid.distance", problem, reader.shown(form["distance"]), remedy)
         most = STEEPEST_END * form["radius"]
         if self.length < 2.0 * most and not max(height, self.length - height) < most:
@@ -189,7 +187,7 @@ class GloboidRules(FormRules):
             reader.fault_at("cam.turret.height", problem, reader.shown(height), remedy)
         elif not self.length < 2.0 * most:
             problem = "the ends of the cam lie beside the throat, which is an arc about the turret's axis"
-            remedy = f"give less than {_less(2.0 * most, reader)}, with the turret's axis in the middle of it"
+            remedy = f"give less than {less(2.0 * most, reader)}, with the turret's axis in the middle of it"
             reader.fault_at("part.length", problem, reader.shown(self.length), remedy)
 
     def _reach(self, turret: Turret) -> tuple[float, float]:
@@ -200,7 +198,7 @@ class GloboidRules(FormRules):
         if "to" not in self.turret or roller.outer < floor:
             return False
         reader, problem = self.reader, "the rim of the roller's end stands on the floor"
-        remedy = f"give less than {_less(floor, reader)}, or a greater depth"
+        remedy = f"give less than {less(floor, reader)}, or a greater depth"
         reader.fault_at("cam.turret.to", problem, reader.shown(roller.outer), remedy)
         return True
 
@@ -215,13 +213,13 @@ class GloboidRules(FormRules):
 
 
 def _bearing(low: float, high: float, reader: Reader) -> str:
-    return f"let it bear between {reader.shown(low)} and {_less(high, reader)}"
+    return f"let it bear between {reader.shown(low)} and {less(high, reader)}"
 
 
-def _less(value: float, reader: Reader) -> str:
+def less(value: float, reader: Reader) -> str:
     """A length a little below a bound, mm, in the recipe's unit."""
     return f"{downward(value / reader.mm, 5)} {reader.units}"
 
 
-def _more(value: float, reader: Reader) -> str:
+def more(value: float, reader: Reader) -> str:
     return f"{upward(value / reader.mm, 5)} {reader.units}"

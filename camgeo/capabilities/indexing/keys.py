@@ -5,6 +5,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from camgeo.formats.options import RECIPE_UNITS, SOLID_UNITS, TOLERANCE
+from camgeo.formats.turned import program_files
 from camgeo.motions.inputs import Input
 from camgeo.motions.motion import motion_field
 from camgeo.part import bore
@@ -31,6 +32,10 @@ MOST_INERTIA = 1e6  # kg m^2
 OUTER = "outer"
 MIDDLE, INNER, OUTSIDE, ANY = (f"{PRESSURE_ANGLE}-{word}" for word in ("middle", "inner", "outer", "any"))
 LENGTH, RIB, LEAST, MOST_ENGAGED = "contact-length", "rib-thickness", "engaged-least", "engaged-most"
+
+EXAMPLE = "axes: [X, Y, A], cutter: 18, feed: 300, plunge: 60, spindle: 2500, safe_height: 5"
+NO_PROGRAM = "no program is made of a globoid: its rollers swing in a plane with its axis, which takes a fifth axis"
+SOLID_OF_IT = "give stl, 3mf or ply to the software of a machine with five axes"
 
 BARREL = mapping(
     "barrel",
@@ -224,6 +229,7 @@ FILES: dict[str, Format] = {
     **{name: _mesh(name, SOLID_UNITS, TOLERANCE) for name in ("stl", "ply", "3mf")},
     "glb": replace(_mesh("glb", TOLERANCE), contour=False),
     "dxf": _development(),
+    **program_files("diameter of the cutter; at most that of the smaller roller"),
     "csv": _table(),
     "html": replace(FORMATS["html"], options=FieldTable(())),
 }

@@ -7,11 +7,12 @@ from typing import TYPE_CHECKING
 
 from camgeo.capabilities.indexing.design import in_recipe
 from camgeo.capabilities.indexing.solid import index_mesh
-from camgeo.capabilities.indexing.verdicts import judged_file
+from camgeo.capabilities.indexing.verdicts import intended, judged_file
 from camgeo.common.units import UNIT_MM
 from camgeo.files.errors import demand_package
 from camgeo.files.mesh import Item
 from camgeo.formats.glb import COLOURS, Actor, steady_turn, write_glb
+from camgeo.machining.turned import cutting_of, demand_judged
 from camgeo.measures.file_result import FileResult
 from camgeo.output.extension import MAKING, numbers_of
 from camgeo.output.own_kind import Made, judged_made
@@ -26,10 +27,21 @@ if TYPE_CHECKING:
     from kin.indexing.verdict import IndexVerdict
 
 
-def foresee(design: IndexDesign, request: FileRequest) -> None:  # noqa: ARG001 - as of every kind of cam
-    """Raise MissingExtraError where a package is missing that makes a file."""
+def foresee(design: IndexDesign, request: FileRequest) -> None:
+    """Raise MissingExtraError where a package is missing that makes a file, RecipeErrors for one that is not judged."""
     if request.kind == "dxf":
         demand_package("ezdxf", "a DXF file needs ezdxf")
+    if request.format.program:
+        _demand_judged(design, request)
+
+
+def _demand_judged(design: IndexDesign, request: FileRequest) -> None:
+    """Raise RecipeErrors for a program whose tolerance is finer than what it leaves is judged to."""
+    from kin.indexing.program import finest_told
+
+    recipe = design.recipe
+    finest = finest_told(intended(design), cutting_of(request, recipe.form.depth))
+    demand_judged(recipe, request, finest, "a program of this barrel")
 
 
 def make(design: IndexDesign, clock: Clock, request: FileRequest, path: Path) -> Made[IndexVerdict]:
@@ -46,7 +58,8 @@ def make(design: IndexDesign, clock: Clock, request: FileRequest, path: Path) ->
             write_csv(design, request, path)
         return Made(FileResult(path, request, units=UNIT_MM[request.unit_for(recipe.units)]))
     with refusals(recipe, request, partial(in_recipe, recipe)):
-        return _MAKERS.get(request.kind, _mesh)(design, clock, request, path)
+        maker = _program if request.format.program else _MAKERS.get(request.kind, _mesh)
+        return maker(design, clock, request, path)
 
 
 def _mesh(design: IndexDesign, clock: Clock, request: FileRequest, path: Path) -> Made[IndexVerdict]:
@@ -81,5 +94,14 @@ def _development(design: IndexDesign, clock: Clock, request: FileRequest, path: 
     return judged_made(judged_file, design, path, request, clock=clock, fit=fit)
 
 
+def _program(design: IndexDesign, clock: Clock, request: FileRequest, path: Path) -> Made[IndexVerdict]:
+    from camgeo.capabilities.indexing.program import write_program
+
+    mm = UNIT_MM[request.unit_for(design.recipe.units)]
+    with clock.stage(f"write {request.kind}"):
+        fit = write_program(design, request, path, design.recipe.tolerance(request), mm)
+    return judged_made(judged_file, design, path, request, clock=clock, fit=fit)
+
+
 _MAKERS = {"dxf": _development, "glb": _view}
-"""Makers of files by their formats, beside meshes."""
+"""Makers of files by their formats, beside programs and meshes."""

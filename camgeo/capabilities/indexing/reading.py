@@ -5,9 +5,10 @@ from __future__ import annotations
 import math
 from typing import TYPE_CHECKING
 
-from camgeo.capabilities.indexing.form_rules import rules_of
+from camgeo.capabilities.indexing.form_rules import NOTHING, less, more, rules_of
 from camgeo.capabilities.indexing.index_recipe import Drive, IndexRecipe
-from camgeo.capabilities.indexing.keys import FILES, RECIPE
+from camgeo.capabilities.indexing.keys import EXAMPLE, FILES, NO_PROGRAM, RECIPE, SOLID_OF_IT
+from camgeo.formats.turned import programs_in
 from camgeo.motions.motion import check_filled
 from camgeo.part.keyway import check_round
 from camgeo.recipe.export import build_export, check_files
@@ -29,12 +30,13 @@ NOT_YET = NotYet(
     "an indexing cam",
     {
         "cam.sizing": "give the radius of the blank, turret.radius and turret.roller",
-        "manufacture": "give stl, 3mf or ply to a machine's own software",
+        "manufacture": f"a program of a barrel has its cutter and feeds beside its axes, {{gcode: {{{EXAMPLE}}}}}",
         "made": "measured points of an indexing cam are not judged",
     },
-    ("svg", "step", "gcode"),
+    ("svg", "step"),
     "stl, 3mf or ply",
 )
+RIDGE = 0.02  # mm by which what two cuts along the groove clear is wider than that
 
 
 def reader_of(source: Source) -> tuple[Reader, Values]:
@@ -67,6 +69,7 @@ def _check(values: Values, reader: Reader) -> None:
     if not reader.errors:
         rules.check_roller()
         _check_developments(values, rules.built(), reader)
+        _check_programs(values, rules.built(), reader)
         _check_limits(values, reader)
 
 
@@ -96,6 +99,36 @@ def _check_developments(values: Values, turret: Turret, reader: Reader) -> None:
         if file["kind"] == "dxf":
             remedy = "give stl, 3mf or ply: a torus is not unrolled without stretching"
             reader.fault_at(file["path"], "a globoid has no development", None, remedy)
+
+
+def _check_programs(values: Values, turret: Turret, reader: Reader) -> None:
+    """Note programs of a turret's cam that has none, what one lacks, and a cutter that spoils flanks, or a groove."""
+    if not turret.unrolls:
+        for file in values.get("export", {}).get("files", []):
+            if FILES[file["kind"]].program:
+                reader.fault_at(file["path"], NO_PROGRAM, None, SOLID_OF_IT)
+        return
+    given = values["cam"]["turret"]
+    play = given.get("clearance", 0.0) - given.get("preload", 0.0)
+    smaller = given["roller"] + min(play, 0.0)
+    narrowest = given["roller"] + 0.5 * play + RIDGE
+    for file in programs_in(values, reader, EXAMPLE):
+        path, told = f"{file['path']}.{file['kind']}", reader.shown(file["cutter"])
+        if "Y" not in file["axes"]:
+            problem = "a barrel's rollers stand beside its axis, and so does the cutter"
+            reader.fault_at(f"{path}.axes", problem, ", ".join(file["axes"]), "give [X, Y, A]")
+        allowance = file.get("allowance", 0.0)
+        widest = 2.0 * (smaller - allowance)
+        if file["cutter"] > widest + NOTHING and widest <= narrowest:
+            remedy = f"give an allowance below {less(smaller - 0.5 * narrowest, reader)}"
+            reader.fault_at(f"{path}.allowance", "leaves no room for a cutter", reader.shown(allowance), remedy)
+        elif file["cutter"] > widest + NOTHING:
+            what = "the smaller roller less the allowance on both flanks" if allowance else "the smaller roller"
+            problem = f"a cutter wider than {what} cuts the flanks away"
+            reader.fault_at(f"{path}.cutter", problem, told, f"give at most {reader.shown(widest)}")
+        elif file["cutter"] < narrowest - NOTHING:
+            remedy = f"give at least {more(narrowest, reader)}"
+            reader.fault_at(f"{path}.cutter", "does not clear the groove along both flanks", told, remedy)
 
 
 def _check_limits(values: Values, reader: Reader) -> None:

@@ -5,8 +5,9 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, Any
 
 from camgeo.capabilities.indexing.development import developed
-from camgeo.capabilities.indexing.keys import DEVELOPMENT, FILES
+from camgeo.capabilities.indexing.keys import DEVELOPMENT, EXAMPLE, FILES, NO_PROGRAM, SOLID_OF_IT
 from camgeo.common.units import UNIT_MM
+from camgeo.machining.turned import cutting_of
 from camgeo.measures.units import in_units
 from camgeo.part.as_intent import holes_of
 from camgeo.part.body import Body
@@ -56,12 +57,14 @@ def judged_file(
     """Kin's verdict on a file; `units` is mm in the unit of a file that states none.
 
     A drawing that the recipe does not request is compared with all developments that it does request, or else with the
-    default one. Raises RecipeErrors for a drawing of a globoid.
+    default one. Raises RecipeErrors for a drawing or a program of a globoid.
     """
     from kin.indexing.judge import verify
 
     recipe = design.recipe
     limits = intent.Limits(tolerance, recipe.verify.motion_error)
+    if format_of(path).contents == "program":
+        return _judged_program(design, path, request, limits)
     stated = format_of(path).units
     if format_of(path).contents != "drawing":
         own = 1.0 if request is None else UNIT_MM[request.unit_for("mm")]
@@ -75,6 +78,22 @@ def judged_file(
     mm = UNIT_MM[asked[0].unit_for(recipe.units)]
     lines = {line.layer: line for each in asked for line in developed(design, each, mm)}
     return verify_development(path, intended(design, mm), list(lines.values()), limits, None if stated else units or mm)
+
+
+def _judged_program(
+    design: IndexDesign, path: Path, request: FileRequest | None, limits: intent.Limits
+) -> IndexVerdict:
+    """Kin's verdict on a program; one that the recipe does not ask for is judged by the cutter of one that it does."""
+    from kin.indexing.program import verify_program
+
+    recipe = design.recipe
+    if not recipe.turret.unrolls:
+        raise recipe.error(recipe.stated("cam.globoid"), NO_PROGRAM, None, SOLID_OF_IT)
+    asked = request or next((each for each in recipe.export.files if each.format.program), None)
+    if asked is None:
+        remedy = f"give export: {{files: [{{gcode: {{{EXAMPLE}}}}}]}}: a program is judged by its cutter"
+        raise recipe.error("export.files", "no program is asked for", None, remedy)
+    return verify_program(path, intended(design), cutting_of(asked, recipe.form.depth), limits)
 
 
 # --- in a report ------------------------------------------------------------------------------------------------------

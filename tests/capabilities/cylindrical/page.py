@@ -1,6 +1,6 @@
 """Tables of keys of docs/cylindrical.md: those of a recipe of a cylindrical cam."""
 
-from camgeo.capabilities.cylindrical.keys import CAM, LIMITS, MADE, PART, PROGRAM
+from camgeo.capabilities.cylindrical.keys import CAM, FILES, LIMITS, MADE, PART
 from camgeo.schema.fields import FieldTable
 
 
@@ -18,5 +18,5 @@ TABLES = {
     **dict(_below(CAM, "cam cylindrical")),
     "part cylindrical": PART.inner,
     "made cylindrical": MADE.inner,
-    "gcode cylindrical": FieldTable(PROGRAM),  # needs: milling
+    "gcode cylindrical": FILES["gcode"].options,  # needs: milling
 }

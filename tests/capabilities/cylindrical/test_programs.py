@@ -2,7 +2,7 @@
 """Programs of drums: written, read by a few lines of their own, held against brute force, judged, refused.
 
 Holds: camgeo.capabilities.cylindrical.program, camgeo.capabilities.cylindrical.ways,
-camgeo.capabilities.cylindrical.angles, camgeo.capabilities.cylindrical.bends.
+camgeo.fit.parted, camgeo.capabilities.cylindrical.bends.
 """
 
 from __future__ import annotations
@@ -50,8 +50,8 @@ from camgeo.capabilities.cylindrical.ways import Cutter, Way, radially_off, set_
 from camgeo.cli.main import main
 from camgeo.common.clock import Clock
 from camgeo.schema.errors import RecipeErrors
-from kin.cylindrical import cutters
 from kin.numeric.records import replace
+from kin.turned import cutters
 
 if TYPE_CHECKING:
     from collections.abc import Callable

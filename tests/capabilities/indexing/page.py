@@ -1,6 +1,6 @@
 """Tables of keys of docs/indexing.md: those of a recipe of an indexing cam."""
 
-from camgeo.capabilities.indexing.keys import CAM, LIMITS, PART
+from camgeo.capabilities.indexing.keys import CAM, FILES, LIMITS, PART
 from camgeo.schema.fields import FieldTable
 
 
@@ -17,4 +17,5 @@ TABLES = {
     "cam indexing": FieldTable(tuple(field for field in CAM.fields if field.name != "kind"), CAM.alternatives),
     **dict(_below(CAM, "cam indexing")),
     "part indexing": PART.inner,
+    "gcode indexing": FILES["gcode"].options,  # needs: milling
 }

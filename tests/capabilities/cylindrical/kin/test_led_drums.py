@@ -1,6 +1,6 @@
 """Drums whose roller is a cone, on an arm or beside the axis, judged: against brute force by positions, with faults.
 
-Holds: kin.cylindrical.led_gauge, kin.cylindrical.guide, kin.cylindrical.play.
+Holds: kin.cylindrical.led_gauge, kin.turned.guide, kin.cylindrical.play.
 """
 
 import functools

@@ -1,6 +1,6 @@
 """Programs of a drum, written here: what their cutters leave against brute force, and planted faults.
 
-Holds: kin.cylindrical.program, kin.cylindrical.cutters, kin.cylindrical.turned.
+Holds: kin.cylindrical.program, kin.turned.cutters, kin.turned.moves.
 """
 
 import math
@@ -13,14 +13,15 @@ from capabilities.cylindrical.kin.drums import TURN, Arm, Drum, End, Groove, Mot
 from support.cases import few
 from support.programmes import Segment, law, programme
 
-from kin.cylindrical.cutters import left_on
 from kin.cylindrical.gauge import gauges_of
 from kin.cylindrical.intent import Limits
 from kin.cylindrical.lifts import Lifts
-from kin.cylindrical.program import Cutting, off_path, verify_program
+from kin.cylindrical.program import off_path, verify_program
 from kin.cylindrical.roller import Gauge
-from kin.cylindrical.turned import Pass, passes_of, read_turned
 from kin.read.errors import ReadError
+from kin.turned.checks import Cutting
+from kin.turned.cutters import left_on
+from kin.turned.moves import Pass, passes_of, read_turned
 
 TOLERANCE = 1e-3
 CUTTING = Cutting(10.0, 300.0, inverse=True, depth_of_cut=7.0)

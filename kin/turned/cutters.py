@@ -24,19 +24,22 @@ it than it is large, another turn counts for what is left alone, and is held aga
 from __future__ import annotations
 
 import math
-from typing import TYPE_CHECKING, NamedTuple
+from typing import TYPE_CHECKING, NamedTuple, Protocol, TypeVar
 
 import numpy as np
 
-from kin.cylindrical.turned import Pass
 from kin.numeric.angles import TURN
 from kin.numeric.arrays import runs_of
+from kin.turned.moves import Pass
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Sequence
 
-    from kin.cylindrical.roller import Gauge
+    from kin.law.contacts import Side
     from kin.numeric.arrays import Array, Indices, Mask
+    from kin.turned.guide import Axis, Guide
+
+Along = TypeVar("Along", float, "Array")
 
 LOOKS = 720  # parts of a turn over each of which the flank's second derivatives are bounded
 STEPPED = 0.1  # of the tolerance, by which D may differ over a step that a pass leaves
@@ -49,6 +52,7 @@ STEPS, CONED, HOPS = 2, 3, 60  # of Newton's method in a block, of a cone, and b
 MOST_POINTS, ROOMY = 4_000_000, 1.1  # of points to begin with, and times as many where cutters are more askew
 FINER = 1.02  # of the finest tolerance: as near as it is found
 TINY = 1e-9
+ROUNDING = 1e-6  # of a part of a turn
 ROOM = 0.01  # rad
 TILT, LEAN = 0.4, 1.6  # rad, times the root of the tolerance, mm: how much a cutter is askew on chords, to begin with
 ALIKE, SMALLER = 0.01, 0.1  # of the radius: one that is smaller by more leans more, rad
@@ -58,6 +62,80 @@ BINS = 720  # parts of a turn, of each of which it is known how far along the dr
 BLOCK = 16  # angles, looked at together for another turn's pass
 SKIPPED = 2, 4  # rows and angles of a cell, over which a pass is told to take nothing
 THIN_ROWS, THIN = 6, 12  # every so many points are looked at, to see that a pass is far off
+
+
+class Lifts(Protocol):
+    """What leads a track's roller along its guide, over the shaft angle, rad."""
+
+    @property
+    def span(self) -> tuple[float, float]:
+        """Shaft angles between which the track is asked for."""
+
+    @property
+    def breaks(self) -> Array:
+        """Angles (k,) of the span at which a derivative may jump."""
+
+    def at(self, theta: Array) -> tuple[Array, Array, Array]:
+        """Position, slope and bend (n,) each at angles (n,), rad."""
+
+    def enclosure(self, lower: Array, upper: Array, order: int) -> tuple[Array, Array]:
+        """Balls mid +- rad (order + 1, n) of the position and its derivatives between angles (n,), rad, of the span."""
+
+    def repeats(self, turns: int) -> bool:
+        """Whether a roller is in the same place after so many whole turns."""
+
+
+class Track(Protocol):
+    """A flank of a track in a turning body, and the roller without ends that leaves it, its axis square to that."""
+
+    @property
+    def side(self) -> Side:
+        """Side of the roller on which the metal lies."""
+
+    @property
+    def radius(self) -> float:
+        """Radius of the roller, mm."""
+
+    @property
+    def inner(self) -> float:
+        """Where the roller begins along its axis, mm."""
+
+    @property
+    def outer(self) -> float:
+        """Where it ends, mm."""
+
+    @property
+    def floor(self) -> float:
+        """Radius, mm, down to which the flank reaches."""
+
+    @property
+    def reach(self) -> float:
+        """Distance, mm, from the plane of the body's axis and the roller's direction, within which it touches."""
+
+    @property
+    def spread(self) -> float:
+        """How fast the roller's radius grows along its axis."""
+
+    @property
+    def ends(self) -> tuple[float, float]:
+        """Places along the body's axis, mm, beyond which there is no metal."""
+
+    @property
+    def led(self) -> Guide:
+        """What leads the roller's axis."""
+
+    @property
+    def lifts(self) -> Lifts:
+        """How it is led."""
+
+    def size(self, along: Along) -> Along:
+        """Radius of the roller, mm, at places along it, mm."""
+
+    def axis(self, theta: Array) -> Array:
+        """Place of the roller's axis along that of the body, mm (n,), at shaft angles (n,), rad."""
+
+    def leaning(self, axis: Axis[Array], along: Array) -> tuple[Array, Array, Array]:
+        """Sine and cosine of the contact's angle at places along the roller, mm, and h, mm."""
 
 
 class Left(NamedTuple):
@@ -131,11 +209,12 @@ class _Askew(NamedTuple):
     lean: float
 
 
-def left_on(gauge: Gauge, passes: Sequence[Pass], radius: float, tolerance: float, growth: float = 0.0) -> Left | None:
+def left_on(gauge: Track, passes: Sequence[Pass], radius: float, tolerance: float, growth: float = 0.0) -> Left | None:
     """What passes of a cutter leave of a flank; None where it would take too many points.
 
     The cutter has the `radius`, mm, at its end, and grows by `growth` along its axis. The flank has to be regular, its
-    motion without jumps of the velocity, and no pass may turn to and fro.
+    motion without jumps of the velocity, and no pass may turn to and fro. What is
+    told of cells beyond the body's ends does not count.
     """
     cutter = _Cutter(radius, growth)
     ways = [_forwards(one) for one in _deepest(passes)]
@@ -152,7 +231,7 @@ def left_on(gauge: Gauge, passes: Sequence[Pass], radius: float, tolerance: floa
         askew = _Askew(max(askew.tilt, 1.5 * widest.tilt), max(askew.lean, 1.5 * widest.lean))
 
 
-def finest_on(gauge: Gauge, radius: float, growth: float = 0.0) -> float:
+def finest_on(gauge: Track, radius: float, growth: float = 0.0) -> float:
     """Least tolerance, mm, to within `FINER`, to which `left_on` tells what a cutter leaves of a flank."""
     cutter = _Cutter(radius, growth)
 
@@ -169,7 +248,7 @@ def finest_on(gauge: Gauge, radius: float, growth: float = 0.0) -> float:
     return high
 
 
-def _begun(gauge: Gauge, cutter: _Cutter, tolerance: float) -> _Askew:
+def _begun(gauge: Track, cutter: _Cutter, tolerance: float) -> _Askew:
     """How much a cutter is taken to be askew to begin with."""
     sizes = (float(gauge.size(rho)) for rho in (gauge.inner, gauge.outer))
     smaller = max(abs(size - cutter.radius) for size in sizes) / cutter.radius > ALIKE
@@ -202,7 +281,11 @@ def _forwards(one: Pass) -> Pass:
 
 
 def _left(
-    gauge: Gauge, ways: Sequence[Pass], cutter: _Cutter, askew: _Askew, tolerance: float
+    gauge: Track,
+    ways: Sequence[Pass],
+    cutter: _Cutter,
+    askew: _Askew,
+    tolerance: float,
 ) -> tuple[Left, _Askew] | None:
     """What is left at points of a flank, and how much a cutter that decides there is askew at most.
 
@@ -217,6 +300,7 @@ def _left(
     h1, h2 = 0.25 * np.diff(theta), 0.25 * np.diff(rho)[:, None]
     bend, widest = tolerance * (ACROSS + ALONG), [0.0, 0.0]
     others = _Others(gauge, points)
+    inside = corners_of(cells_within(points.z, gauge.ends))
 
     def far(one: Pass) -> tuple[bool, float]:
         """Passes along the other flank come last, deeper ones behind those that are less deep: they take less."""
@@ -230,7 +314,7 @@ def _left(
         if _is_clear(points.part(slice(first, None, THIN_ROWS), slice(None, None, THIN)), one, gauge, cutter):
             continue
         for turn, stretch in _turns(one, theta, gauge.reach / gauge.floor + ROOM):
-            own_turn = round(turn / TURN) % gauge.lifts.turns == 0
+            own_turn = gauge.lifts.repeats(round(turn / TURN))
             for columns in [stretch] if own_turn else others.near(one, turn, stretch, cutter):
                 begun = points.part(slice(first, None), columns)
 
@@ -250,7 +334,7 @@ def _left(
                 if taken is not None:
                     apart = np.where(taken, np.inf, apart)
                 off[here] = np.minimum(off[here], np.where(own, apart, np.inf))
-                near = own & (apart <= off[here] + NEAR * tolerance)
+                near = own & inside[here] & (apart <= off[here] + NEAR * tolerance)
                 turned = (met.tilt, met.lean)
                 widest = [
                     max(most, float(np.abs(row[near]).max(initial=0.0)))
@@ -294,7 +378,7 @@ def _felt(own: Array, come: Callable[[Indices, Indices], _Met], askew: _Askew, t
 class _Others:
     """Rollers of the other turns beside points of a flank."""
 
-    def __init__(self, gauge: Gauge, points: _Points) -> None:
+    def __init__(self, gauge: Track, points: _Points) -> None:
         self.gauge, self.points = gauge, points
         self.reach = gauge.reach / gauge.floor + ROOM
         self.low, self.high = points.z.min(axis=0), points.z.max(axis=0)
@@ -341,7 +425,7 @@ class _Others:
         return taken
 
 
-def _is_clear(points: _Points, one: Pass, gauge: Gauge, cutter: _Cutter) -> bool:
+def _is_clear(points: _Points, one: Pass, gauge: Track, cutter: _Cutter) -> bool:
     """Whether a pass stands so far from some points of a flank that it does not come to it anywhere between them."""
     theta = points.theta[0]
     far = np.inf
@@ -363,6 +447,20 @@ def _turns(one: Pass, theta: Array, reach: float) -> list[tuple[float, slice]]:
     return sorted(found, key=lambda each: each[1].start - each[1].stop)
 
 
+def cells_within(z: Array, ends: tuple[float, float]) -> Mask:
+    """Cells (m - 1, n - 1) between points at heights z (m, n), mm, that are not wholly beyond one of two heights."""
+    return np.asarray((_over(z, np.maximum) >= ends[0]) & (_over(z, np.minimum) <= ends[1]))
+
+
+def corners_of(cells: Mask) -> Mask:
+    """Points (m, n) that are corners of any of some cells (m - 1, n - 1)."""
+    found = np.zeros((cells.shape[0] + 1, cells.shape[1] + 1), dtype=np.bool_)
+    for rows in (slice(1, None), slice(None, -1)):
+        for columns in (slice(1, None), slice(None, -1)):
+            found[rows, columns] |= cells
+    return found
+
+
 def _over(values: Array | Mask, pick: np.ufunc) -> Array:
     """The greatest or the least of the corners of each cell, (..., m - 1, n - 1) of (..., m, n)."""
     rows = pick(values[..., 1:, :], values[..., :-1, :])
@@ -370,7 +468,7 @@ def _over(values: Array | Mask, pick: np.ufunc) -> Array:
     return found
 
 
-def _points(gauge: Gauge, theta: Array, rho: Array) -> _Points:
+def _points(gauge: Track, theta: Array, rho: Array) -> _Points:
     """Where the roller touches, by n = -sin a e_t + cos a k, with derivatives."""
     axis, place, side = gauge.led.axis(*gauge.lifts.at(theta)), rho[:, None], gauge.side
     growth, size = gauge.spread, gauge.size(place)
@@ -397,7 +495,7 @@ def _points(gauge: Gauge, theta: Array, rho: Array) -> _Points:
     )
 
 
-def _grid(gauge: Gauge, cutter: _Cutter, askew: _Askew, tolerance: float) -> tuple[Array, Array]:
+def _grid(gauge: Track, cutter: _Cutter, askew: _Askew, tolerance: float) -> tuple[Array, Array]:
     """Angles, rad, and places, mm, between which D changes by no more than the shares of the tolerance.
 
     All below are bounds of magnitudes over parts of the period, at all places from the roller's inner end to its outer.
@@ -408,9 +506,9 @@ def _grid(gauge: Gauge, cutter: _Cutter, askew: _Askew, tolerance: float) -> tup
 
     and by rho -side R a_2^2 and -side R a_2; what N is askew adds its share of what lies the other way.
     """
-    law, turns = gauge.lifts.law, gauge.lifts.turns
-    looks = np.linspace(0.0, gauge.lifts.period, turns * LOOKS + 1)
-    looks = np.unique(np.concatenate([looks, np.mod(law.breaks, gauge.lifts.period)]))
+    begin, end = gauge.lifts.span
+    looks = np.linspace(begin, end, math.ceil((end - begin) / TURN * LOOKS - ROUNDING) + 1)
+    looks = np.unique(np.concatenate([looks, gauge.lifts.breaks]))
     moved = _Moved.of(gauge, looks)
     bent = _Bent.of(gauge, moved)
     nearest, low, high = NEARLY * cutter.radius, gauge.inner, gauge.outer
@@ -423,7 +521,7 @@ def _grid(gauge: Gauge, cutter: _Cutter, askew: _Askew, tolerance: float) -> tup
     second = bend + out * (tilt + cutter.growth)
     count = np.ceil(np.diff(looks) / np.sqrt(8.0 * ACROSS * tolerance / (speed**2 / nearest + second))).astype(np.intp)
     own, step = runs_of(count)
-    theta = np.append(looks[own] + step * (np.diff(looks) / count)[own], gauge.lifts.period)
+    theta = np.append(looks[own] + step * (np.diff(looks) / count)[own], end)
     along = (size * bent.along + lean * growth + tilt) ** 2 / nearest + size * bent.along**2
     along += lean * (2.0 * growth * bent.along + size * bent.along_twice)
     rows = int(np.ceil((high - low) * np.sqrt(float(along.max()) / (8.0 * ALONG * tolerance))))
@@ -451,13 +549,13 @@ class _Moved(NamedTuple):
     z_low: Array
 
     @staticmethod
-    def of(gauge: Gauge, looks: Array) -> _Moved:
+    def of(gauge: Track, looks: Array) -> _Moved:
         """Bounds between angles (n + 1,): the way T turns by the path's curvature k as the axis goes on by s'.
 
         Its derivatives are s' T, s'' T + k s'^2 E and (s3 - k^2 s'^3) T + 3 k s' s'' E, with E square to T.
         """
         guide = gauge.led
-        mid, rad = gauge.lifts.law.enclosure(looks[:-1], looks[1:], 3)
+        mid, rad = gauge.lifts.enclosure(looks[:-1], looks[1:], 3)
         aside, ty, tz = guide.enclosed(mid[0] - rad[0], mid[0] + rad[0])
         lever, k = guide.lever, guide.bend
         _, s1, s2, s3 = lever * (np.abs(mid) + rad)
@@ -489,7 +587,7 @@ class _Bent(NamedTuple):
     along_twice: Array
 
     @staticmethod
-    def of(gauge: Gauge, moved: _Moved) -> _Bent:
+    def of(gauge: Track, moved: _Moved) -> _Bent:
         """Bounds from those of the axis, from A sin a - z' cos a = side y g differentiated once and twice.
 
         With h = A cos a + z' sin a, which is no less than h(A, z') of the least of both.
@@ -510,7 +608,7 @@ class _Bent(NamedTuple):
         return _Bent(sine, cosine, first, second / h, along, twice)
 
 
-def _nearest(points: _Points, one: Pass, turn: float, gauge: Gauge, cutter: _Cutter) -> _Met:
+def _nearest(points: _Points, one: Pass, turn: float, gauge: Track, cutter: _Cutter) -> _Met:
     """How a pass with rising angles comes to points whose angles are `turn`, rad, more."""
     shape = points.phi.shape
     phi, r, z = (points.phi + turn).ravel(), points.r.ravel(), points.z.ravel()

@@ -1,4 +1,4 @@
-"""Shaft angles between which a line or a path of a drum is straight within a tolerance, by bounds of how it bends."""
+"""Shaft angles between which a line or a path is straight within a tolerance, by bounds of how it bends."""
 
 from __future__ import annotations
 
