@@ -222,4 +222,5 @@ def less(value: float, reader: Reader) -> str:
 
 
 def more(value: float, reader: Reader) -> str:
+    """A length a little above a bound, mm, in the recipe's unit."""
     return f"{upward(value / reader.mm, 5)} {reader.units}"
