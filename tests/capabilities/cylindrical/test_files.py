@@ -434,6 +434,7 @@ REMEDIES = [
 ]
 
 
+@pytest.mark.thin(3)
 @pytest.mark.costly("a drum before and after each remedy")
 @pytest.mark.parametrize(("limit", "words", "change"), REMEDIES, ids=lambda _: "")
 def test_remedies_hold(limit: str, words: str, change: tuple[str, str], tmp_path: Path) -> None:
@@ -450,6 +451,7 @@ def test_remedies_hold(limit: str, words: str, change: tuple[str, str], tmp_path
     assert exported(tmp_path, changed(text, change)).ok
 
 
+@pytest.mark.thin(3)
 @pytest.mark.costly("drums on both sides of each figure that is told")
 @pytest.mark.parametrize(
     ("text", "most", "ways"),

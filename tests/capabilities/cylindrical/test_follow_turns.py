@@ -142,7 +142,7 @@ def test_a_spiral_gives_its_motion_back(spiral: Path) -> None:
     assert followed.lifts().splitlines()[-1].startswith("1440,")
 
 
-@pytest.mark.costly("a solid is made and followed at all angles of its turns")
+@pytest.mark.slow
 def test_another_turn_begins_the_motion(spiral: Path) -> None:
     """At angle 0 the third turn stands at 11 + S(720 degrees)."""
     pins = Pins(SPIRAL_ROWS, 4.0)

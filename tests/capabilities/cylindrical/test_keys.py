@@ -152,6 +152,7 @@ REFUSED = [
 ]
 
 
+@pytest.mark.thin(2)
 @pytest.mark.parametrize(("text", "change", "wanted"), REFUSED, ids=lambda item: "" if item == GROOVE else None)
 def test_a_fault_names_its_remedy(text: str, change: tuple[str, str], wanted: str | None) -> None:
     """A row without words is a neighbour that is taken."""

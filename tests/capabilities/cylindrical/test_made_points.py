@@ -208,6 +208,7 @@ def test_noise_has_an_uncertainty(drum: Flanks) -> None:
     assert not report.ok
 
 
+@pytest.mark.thin(3)
 @pytest.mark.parametrize(
     ("change", "heading", "told"),
     [

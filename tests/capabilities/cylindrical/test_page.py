@@ -90,7 +90,7 @@ def test_a_drum_is_shown_without_what_is_cut_away() -> None:
     assert "<title>undercut</title>" in pressure_map(design)
 
 
-@pytest.mark.costly("rows of a screw are known at many places")
+@pytest.mark.slow
 def test_a_screw_is_shown_with_the_metal_between_its_tracks() -> None:
     """On the blank a place is metal where no pin has been; the development has all tracks, and a ring a crossing."""
     design = design_of(SCREW)

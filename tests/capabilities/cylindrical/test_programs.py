@@ -246,6 +246,7 @@ def test_a_cut_flank_takes_a_cutter_of_the_roller_s_size(tmp_path: Path) -> None
         program_of("23")
 
 
+@pytest.mark.thin(3)
 @pytest.mark.parametrize(
     "row",
     [
@@ -450,6 +451,7 @@ def test_random_led_drums_are_milled_as_rollers_leave_them(tmp_path: Path, seed:
     assert stands_off(tmp_path, text, lift, 20) < recipe.export.tolerance + 2e-4
 
 
+@pytest.mark.thin(3)
 @pytest.mark.costly("programs of several rollers are made and judged")
 @pytest.mark.parametrize("text", [ARM, LEADING, CONE, CONE_ON_ARM, BESIDE, RIB_ON_ARM], ids=lambda text: text[60:130])
 def test_a_cutter_like_the_roller_stands_in_its_place(tmp_path: Path, text: str) -> None:
@@ -471,6 +473,7 @@ def test_a_cutter_like_the_roller_stands_in_its_place(tmp_path: Path, text: str)
     assert told == bool(recipe.roller.taper)
 
 
+@pytest.mark.slow
 def test_a_cylinder_leaves_a_cone_in_steps(tmp_path: Path) -> None:
     """It takes as many depths as the tolerance asks for, each of which touches at its end."""
     text = changed(
@@ -498,7 +501,7 @@ def several(text: str) -> DrumDesign:
     return DrumDesign(replace(recipe_of(text), turns=2), motion, motion.periodic())
 
 
-@pytest.mark.costly("a program over two turns is judged four times")
+@pytest.mark.slow
 @pytest.mark.parametrize("ccw", ["cw", "ccw"])
 def test_a_program_goes_over_all_turns_of_the_motion(tmp_path: Path, ccw: str) -> None:
     design = several(f"rotation: {ccw}\n" + program())

@@ -551,8 +551,7 @@ def scaled(text: str) -> str:
     return re.sub(r"((?:CYLINDRICAL_SURFACE|CIRCLE)\('',#\d+,)([^)]*)(\))", larger, text)
 
 
-@pytest.mark.costly("a solid of each follower, and its verdicts")
-@pytest.mark.thin(3)
+@pytest.mark.slow
 @pytest.mark.parametrize("led", ENDS)
 def test_drums_for_another_follower_are_refused(tmp_path: Path, led: str) -> None:
     path = tmp_path / "drum.step"
@@ -572,8 +571,7 @@ def test_drums_for_another_follower_are_refused(tmp_path: Path, led: str) -> Non
         assert (name, "") in refused(judged(path, design_of(changed(ENDS[led], change)), FINE))
 
 
-@pytest.mark.costly("a solid of each follower, and its verdicts")
-@pytest.mark.thin(3)
+@pytest.mark.slow
 @pytest.mark.parametrize("led", ENDS)
 def test_planted_faults_of_other_followers_are_refused(tmp_path: Path, led: str) -> None:
     path, design = tmp_path / "spoilt.step", design_of(ENDS[led])

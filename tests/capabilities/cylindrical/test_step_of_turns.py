@@ -81,8 +81,7 @@ def pins_of(name: str) -> Pins:
 # --- splines ----------------------------------------------------------------------------------------------------------
 
 
-@pytest.mark.costly("places on splines are held against pins at all angles of several turns")
-@pytest.mark.thin(3)
+@pytest.mark.slow
 @pytest.mark.parametrize("name", TRACKS)
 @pytest.mark.parametrize("tolerance", [0.05, 0.002])
 def test_splines_are_as_near_all_pins_as_is_proved(name: str, tolerance: float) -> None:
@@ -101,7 +100,7 @@ def border(part: Bicubic, column: int) -> np.ndarray:
     return basis(part.r, t) @ part.control[column]
 
 
-@pytest.mark.costly("places on corners' lines are held against pins at all angles of several turns")
+@pytest.mark.slow
 @pytest.mark.parametrize("name", TRACKS)
 def test_both_flanks_of_a_corner_end_in_one_curve_that_is_near_both(name: str) -> None:
     found, design = splines(name, 0.05), designed(name)
@@ -147,7 +146,7 @@ def test_a_jump_of_the_jerk_beneath_an_edge_counts(monkeypatch: pytest.MonkeyPat
     assert columns(trimmed(design, 0.002, lambda *_: [1.0, 1.0 + 0.5 * TURN])) < with_jump
 
 
-@pytest.mark.costly("splines of a drum of two turns at several tolerances")
+@pytest.mark.slow
 def test_a_tolerance_that_is_too_small_names_one_that_serves(monkeypatch: pytest.MonkeyPatch) -> None:
     design = designed("bent")
     with pytest.raises(ToleranceError, match="control points; give at least"):
@@ -190,8 +189,7 @@ def test_lines_that_do_not_follow_one_another_bound_no_face() -> None:
 
 
 @kernel
-@pytest.mark.costly("a solid, read by the kernel and by kin, and written again by the kernel")
-@pytest.mark.thin(3)
+@pytest.mark.slow
 @pytest.mark.parametrize("name", TRACKS)
 def test_another_kernel_takes_the_solid_and_kin_both_files(tmp_path: Path, name: str) -> None:
     tolerance = {"screw": 0.02, "spiral": 0.005, "bent": 0.05}[name]
@@ -289,7 +287,7 @@ FAULTS: dict[str, tuple[Callable[[str], str], str]] = {
 }
 
 
-@pytest.mark.costly("a verdict for each fault")
+@pytest.mark.slow
 @pytest.mark.parametrize("fault", FAULTS)
 def test_planted_faults_are_refused(sound: tuple[str, DrumDesign, Path], fault: str) -> None:
     text, design, folder = sound
@@ -299,7 +297,7 @@ def test_planted_faults_are_refused(sound: tuple[str, DrumDesign, Path], fault: 
     assert name in {each for each, _ in refused(judged(path, design, FINE))}
 
 
-@pytest.mark.costly("verdicts on the drum of another recipe")
+@pytest.mark.slow
 def test_the_solid_of_another_spiral_is_refused(sound: tuple[str, DrumDesign, Path]) -> None:
     """A return with other blends, a higher place, mirrored, a narrower groove."""
     text, _, folder = sound

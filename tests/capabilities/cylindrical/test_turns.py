@@ -164,7 +164,7 @@ def test_the_longest_shoe_passes_the_bend_and_a_longer_one_jams() -> None:
 # --- solids by positions ----------------------------------------------------------------------------------------------
 
 
-@pytest.mark.costly(BRUTE)
+@pytest.mark.slow
 def test_a_screw_is_metal_exactly_where_no_pin_has_been() -> None:
     """Walls are touched by a pin, and missing where that of another turn has been; a closed body."""
     mesh = solid()
@@ -175,7 +175,7 @@ def test_a_screw_is_metal_exactly_where_no_pin_has_been() -> None:
     assert volume(screw()) == pytest.approx(trimesh.Trimesh(fine.points, fine.triangles).volume, rel=2e-4)
 
 
-@pytest.mark.costly(BRUTE)
+@pytest.mark.slow
 def test_a_spiral_with_a_quick_return_is_metal_where_no_pin_has_been() -> None:
     """The other way round, too, and with tracks that cross at unlike slopes."""
     design = design_of(SPIRAL)
@@ -183,6 +183,7 @@ def test_a_spiral_with_a_quick_return_is_metal_where_no_pin_has_been() -> None:
     assert faults(mesh, design, Pins(SPIRAL_ROWS, 4.0)) == []
 
 
+@pytest.mark.thin(4)
 @pytest.mark.costly(BRUTE)
 @pytest.mark.parametrize(
     ("plant", "told"),
@@ -300,7 +301,7 @@ def test_a_follower_that_does_not_pass_is_refused_with_one_that_does(old: str, n
     assert design_of(changed(SCREW, (SHOE, f"{{kind: shoe, width: 10, length: {length}}}"))).crossings
 
 
-@pytest.mark.costly(DRUMS)
+@pytest.mark.slow
 @pytest.mark.parametrize(("law", "tolerance"), [("harmonic", 0.05), ("{uniform: {blend: 90}}", 0.005)])
 def test_the_shoe_of_a_remedy_bridges_gaps_in_files_too(law: str, tolerance: float, tmp_path: Path) -> None:
     """In a file within the tolerance a gap may be longer; a shoe that is too short for it alone is refused before."""
@@ -427,7 +428,7 @@ def test_solid_and_development_are_judged_over_all_turns(text: str, tmp_path: Pa
     assert {"watertight", "contour", "motion"} <= {name.partition(",")[0] for name in held_of}
 
 
-@pytest.mark.costly("solids of several turns are judged at all angles")
+@pytest.mark.slow
 @pytest.mark.parametrize(
     "plant",
     [

@@ -484,7 +484,7 @@ def test_curvature_across_the_line() -> None:
         close(flanks[name].curvature(np.radians([float(theta)]), np.array([float(rho)]))[0], wanted)
 
 
-@pytest.mark.costly("the one drum that is cut short, with the pressure sought over its turn")
+@pytest.mark.slow
 def test_the_pressure_of_a_line_that_a_cut_shortens() -> None:
     """Half way along what carries, by the judge's flank: it begins where no other roller has gone deeper."""
     driven = "undercut: shorten\n  drive: {load: 200, material: steel}"

@@ -89,7 +89,7 @@ def test_laws_that_were_drawn_are_found(tmp_path: Path, offset: float) -> None:
     assert "law" not in found.recipe("found.csv")
 
 
-@pytest.mark.costly("all laws are tried on each stroke")
+@pytest.mark.slow
 @pytest.mark.parametrize("rotation", ["cw", "ccw"])
 def test_a_turn_that_begins_in_a_stroke_is_told_where_to_begin(tmp_path: Path, rotation: Literal["cw", "ccw"]) -> None:
     """A contour that turns the other way is the mirrored one."""

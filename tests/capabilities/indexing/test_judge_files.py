@@ -45,6 +45,7 @@ def refused(verdict):
     return {check.name for check in verdict.checks if not check.ok}
 
 
+@pytest.mark.thin(3)
 @pytest.mark.costly("a boolean and a verdict for each turret")
 @pytest.mark.parametrize("turret", [BARREL, GLOBOID, LEADING, PLAY, PRELOAD, MIRRORED, EIGHT])
 def test_a_sound_cam_is_accepted(turret):
@@ -72,7 +73,7 @@ def test_errors_are_those_of_the_chords(turret):
         assert 0.0 < -flank.motion.least < 0.7 * flank.motion.most
 
 
-@pytest.mark.costly("four verdicts")
+@pytest.mark.slow
 @FORMS
 def test_sound_savings_are_accepted(turret, tmp_path):
     points, corners = mesh(turret)
@@ -105,7 +106,7 @@ def on_flank(turret, points):
     return np.flatnonzero(within)
 
 
-@pytest.mark.costly("three verdicts for each form")
+@pytest.mark.slow
 @FORMS
 def test_a_corner_that_was_moved(turret):
     points, corners = mesh(turret)
@@ -135,6 +136,7 @@ FAULTS = {
 }
 
 
+@pytest.mark.thin(3)
 @pytest.mark.costly("a verdict for each fault")
 @pytest.mark.parametrize("fault", FAULTS)
 def test_a_fault_of_the_whole(fault):
@@ -143,6 +145,7 @@ def test_a_fault_of_the_whole(fault):
     assert names <= refused(judged(points, corners, BARREL.intent))
 
 
+@pytest.mark.thin(4)
 @pytest.mark.costly("a verdict for each fault")
 @pytest.mark.parametrize(
     ("how", "names"),

@@ -153,6 +153,7 @@ REFUSED = [
 ]
 
 
+@pytest.mark.thin(2)
 @pytest.mark.parametrize(("text", "change", "wanted"), REFUSED, ids=lambda item: "" if item == BARREL else None)
 def test_a_fault_names_its_remedy(text: str, change: tuple[str, str], wanted: str | None) -> None:
     """A row without words is a neighbour that is taken."""
@@ -228,6 +229,7 @@ REMEDIES = [
 ]
 
 
+@pytest.mark.thin(3)
 @pytest.mark.costly("a search for a size, and a cam of it")
 @pytest.mark.parametrize(("text", "change", "told", "size", "share"), REMEDIES)
 def test_remedies_of_a_size_hold(

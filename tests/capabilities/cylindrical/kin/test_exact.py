@@ -74,7 +74,7 @@ DRUMS |= LED
 
 
 @pytest.mark.costly("positions at all angles of places on all patches")
-@pytest.mark.thin(2)
+@pytest.mark.thin(6)
 @pytest.mark.parametrize("bend", [0.0, 4e-3], ids=["sound", "bent"])
 @pytest.mark.parametrize("kind", DRUMS)
 def test_what_stands_out_is_missing_and_holds(kind, bend):
@@ -104,7 +104,7 @@ def test_what_stands_out_is_missing_and_holds(kind, bend):
 
 
 @pytest.mark.costly("positions at all angles of places within cells")
-@pytest.mark.thin(2)
+@pytest.mark.thin(4)
 @pytest.mark.parametrize(
     ("kind", "shaken"),
     [("groove", 0.03), ("top", 0.03), ("groove", 0.002), ("top", 0.0)]

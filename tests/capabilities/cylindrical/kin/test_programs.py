@@ -164,6 +164,7 @@ PLANTED = [
 ]
 
 
+@pytest.mark.thin(5)
 @pytest.mark.costly("each kind of roller with each fault is a program to be judged")
 @pytest.mark.parametrize(("kind", "fault"), few(PLANTED, 7))
 def test_planted_faults_of_led_rollers_are_refused(tmp_path, kind, fault):
@@ -364,6 +365,7 @@ def test_a_rest_in_one_long_block(tmp_path):
         assert second.motion.rms == pytest.approx(first.motion.rms, abs=1e-5)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("degrees", [0.0, 90.0, 200.0])
 def test_a_hole_on_the_path_is_nothing_s_fault(tmp_path, degrees):
     whole, holed = (judged(tmp_path, text) for text in (text_of(*way()), drilled(text_of(*way()), degrees)))

@@ -77,6 +77,7 @@ def walls_of(drum, solid, chance, count):
     return np.einsum("nk,nkx->nx", chance.dirichlet(np.full(3, 0.3), count), chosen)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("name", ["sound", "spiral"])
 def test_a_sound_screw_is_accepted_with_what_was_measured(name, request):
     solid, drum = request.getfixturevalue(name), {"sound": SCREW, "spiral": SPIRAL}[name]
@@ -182,6 +183,7 @@ def far_from_crossings(drum, places):
     return near[each[1] > 1.0]
 
 
+@pytest.mark.slow
 def test_a_corner_that_was_moved(sound):
     places, corners = sound
     number = far_from_crossings(SCREW, places)[10]
