@@ -263,8 +263,7 @@ TRACKS = {
 
 
 @kernel
-@pytest.mark.costly("a solid, read by the kernel and by kin, and written again by the kernel")
-@pytest.mark.thin(3)
+@pytest.mark.slow
 @pytest.mark.parametrize("track", TRACKS)
 def test_another_kernel_takes_the_solid_and_kin_both_files(tmp_path: Path, track: str) -> None:
     tolerance = 0.05 if track == "groove" else 0.005

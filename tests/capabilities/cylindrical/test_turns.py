@@ -416,6 +416,7 @@ def test_an_acceleration_that_jumps_on_an_edge_is_refused_and_beside_it_is_made(
 # --- from recipe to verdict -------------------------------------------------------------------------------------------
 
 
+@pytest.mark.thin(2)
 @pytest.mark.costly("solids of several turns are judged at all angles")
 @pytest.mark.parametrize("text", [SCREW, SPIRAL], ids=["screw", "spiral"])
 def test_solid_and_development_are_judged_over_all_turns(text: str, tmp_path: Path) -> None:

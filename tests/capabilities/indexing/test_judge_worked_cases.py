@@ -54,6 +54,7 @@ def test_what_a_larger_roller_touches_is_so_far_in_the_metal(turret, more):
         np.testing.assert_allclose(distance, more, atol=2e-6)
 
 
+@pytest.mark.thin(3)
 @pytest.mark.parametrize("turret", [Turret(), GLOBOID, changed(Turret(), form=Barrel(50.0, 13.0, -57.0, 60.0, -1))])
 def test_the_least_of_many_angles_is_found(turret):
     """Points anywhere in the blank, against all angles of a fine grid on the turret's side."""

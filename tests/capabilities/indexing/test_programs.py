@@ -119,7 +119,7 @@ CASES = {
 
 
 @pytest.mark.costly("brute force over the positions of a cutter and of rollers")
-@pytest.mark.thin(1)
+@pytest.mark.thin(3)
 @pytest.mark.parametrize("case", CASES)
 def test_the_cutter_takes_what_rollers_take(case: str) -> None:
     """Random places of the blank are as far from the cutter at all its positions as from the rollers of a flank."""
@@ -181,6 +181,7 @@ def test_a_program_says_how_it_is_meant() -> None:
     np.testing.assert_allclose(np.array(feeds) * far, 300.0, rtol=1e-5)
 
 
+@pytest.mark.slow
 def test_an_allowance_is_left_by_all_but_the_last_pass() -> None:
     words = written(changed(EIGHT, ("cutter: 18", "cutter: 16, allowance: 0.3")))[1]
     names = [line for line in words.splitlines() if " pass " in line]
@@ -222,6 +223,7 @@ FAULTS: dict[str, tuple[Callable[[str], str], str]] = {
 }
 
 
+@pytest.mark.thin(3)
 @pytest.mark.costly("what is left is looked at for each fault")
 @pytest.mark.parametrize("fault", FAULTS)
 def test_planted_faults_are_refused(tmp_path: Path, fault: str) -> None:
@@ -231,7 +233,7 @@ def test_planted_faults_are_refused(tmp_path: Path, fault: str) -> None:
     assert check in failing(judged(tmp_path, EIGHT, planted))
 
 
-@pytest.mark.costly("two programs judged at a fine tolerance")
+@pytest.mark.slow
 def test_words_too_coarse_and_a_smaller_cutter_are_refused(tmp_path: Path) -> None:
     """What rounding A to 0.01 degrees may take moves the cutter by 4 um where the turret is fast; 2 are permitted."""
     words = written(QUICK)[1]
@@ -246,6 +248,7 @@ def test_words_too_coarse_and_a_smaller_cutter_are_refused(tmp_path: Path) -> No
     assert contours == pytest.approx([0.025, 0.025], abs=0.003)
 
 
+@pytest.mark.thin(4)
 @pytest.mark.parametrize(
     "row",
     [

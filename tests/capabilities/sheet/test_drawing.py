@@ -102,7 +102,7 @@ def with_sheet(text: str, options: str) -> str:
 
 
 @pytest.mark.costly("a sheet of each kind of cam")
-@pytest.mark.thin(18)
+@pytest.mark.thin(45)
 @pytest.mark.parametrize(
     ("path", "paper"),
     [pytest.param(path, f"A{3 + number % 2}", id=path.stem) for number, path in enumerate(SHIPPED)],
