@@ -213,12 +213,15 @@ class Face:
 
     @property
     def inside_out(self) -> bool:
-        """Whether it lies on the right of its bounds as seen from outside.
+        """Whether it lies on the right of its bounds as seen from outside; False where they go the wrong way round."""
+        return abs(self.winding) <= WOUND and self.enclosed < 0.0
 
-        False for patches, level cylinders, and bounds that go the wrong way round.
+    @property
+    def enclosed(self) -> float:
+        """Area within its bounds, above 0 where it lies on their left as seen from outside, in mm² or as `unrolled`.
+
+        0 for patches and level cylinders, whose area is not known by their bounds.
         """
-        if abs(self.winding) > WOUND:
-            return False
         match self.surface:
             case Plane():
                 points = [points_along(*use) for use in self.uses]
@@ -228,8 +231,8 @@ class Face:
             case Swept():
                 area = self.unrolled if self.surface.up else -self.unrolled
             case _:
-                return False
-        return bool((area if self.outward else -area) < 0.0)
+                return 0.0
+        return float(area if self.outward else -area)
 
     @property
     def unrolled(self) -> float:

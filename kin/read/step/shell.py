@@ -188,7 +188,7 @@ def _lies_left(face: Face) -> bool:
             turned = [*order[first:], *order[:first]]
             return turned == ([0, 1, 2, 3] if face.outward else [0, 3, 2, 1])
         case Plane() | RoundFace():
-            return not face.inside_out
+            return face.enclosed > 0.0
     return False
 
 
