@@ -52,7 +52,7 @@ class Form(Protocol):
         """Depth of the cylinder of a radius, mm; raises ValueError for a form whose layers are no cylinders."""
 
     def guide(self, height: float, start: float) -> Swing:
-        """What leads a roller at the angle `start`, rad, the turret's centre at a height, mm.
+        """The turret as an arm that leads a roller from the angle `start`, rad; its centre is at `height`, mm.
 
         Raises ValueError for rollers that do not keep their direction.
         """

@@ -309,7 +309,7 @@ class _Judged:
 
 @dataclass(frozen=True, eq=False)
 class _Seen:
-    """What is left of a flank, mm, and where on it there is metal.
+    """Distances of the cut metal from a flank, mm, above 0 where it stands proud, and the places that have metal.
 
     cells  (m - 1, n - 1) that are not wholly beyond the ends; asked (m, n) their corners
     there  (m, n) places of the metal, which may hold a roller; cost (m, n) of 1 mm there, rad
@@ -324,7 +324,7 @@ class _Seen:
 
     @staticmethod
     def of(track: _Track, left: Left) -> _Seen:
-        """What is left of a track's flank."""
+        """Distances from a track's flank, with the metal there and what it costs the turret."""
         intent, way, rho = track.rollers.intent, track.lifts.at(left.theta), left.rho[:, None]
         axis = track.led.axis(*way)
         _, cosine, _ = track.leaning(axis, rho)
@@ -352,7 +352,7 @@ class _Seen:
         return Peak(value, max(more, 0.0), float(self.left.theta[k % len(self.left.theta)]))
 
     def held(self) -> tuple[Held, Peak]:
-        """What the flank holds over a turn of the cam, of all rollers in it at an angle; and how far it pushes them."""
+        """Errors of the turret, rad, over a turn by all rollers in the cam, and how far metal pushes it at most."""
         theta, track = self.left.theta, self.track
         play = track.radius - track.rollers.intent.roller
         at, own = (np.where(self.there, off * self.cost, -np.inf) for off in (self.left.off, self.left.off - play))

@@ -65,7 +65,7 @@ THIN_ROWS, THIN = 6, 12  # every so many points are looked at, to see that a pas
 
 
 class Lifts(Protocol):
-    """What leads a track's roller along its guide, over the shaft angle, rad."""
+    """Motion of a track's roller along its guide, over the shaft angle, rad."""
 
     @property
     def span(self) -> tuple[float, float]:
@@ -122,11 +122,11 @@ class Track(Protocol):
 
     @property
     def led(self) -> Guide:
-        """What leads the roller's axis."""
+        """Guide of the roller's axis: a slide or an arm."""
 
     @property
     def lifts(self) -> Lifts:
-        """How it is led."""
+        """Motion along that guide."""
 
     def size(self, along: Along) -> Along:
         """Radius of the roller, mm, at places along it, mm."""
@@ -139,9 +139,10 @@ class Track(Protocol):
 
 
 class Left(NamedTuple):
-    """What stands on a flank at angles theta (n,), rad, and places rho (m,), mm: D (m, n), mm, inf where nothing cuts.
+    """Heights of the cut metal over a flank at angles theta (n,), rad, and places rho (m,), mm.
 
-    `above` and `below` (m - 1, n - 1) bound D over the cells between.
+    `off` (m, n) is the height, mm, below 0 where the cutter went too deep, and inf where nothing cuts. `above` and
+    `below` (m - 1, n - 1) bound it over the cells between.
     """
 
     theta: Array
