@@ -14,6 +14,7 @@ from capabilities.cylindrical.wound_drums import Pins, random_track
 from support.heavy import ezdxf
 
 from attacks.outcome import Attack
+from attacks.programs import program_keys
 
 if TYPE_CHECKING:
     from pathlib import Path
@@ -93,24 +94,9 @@ def milled(rng: Random, number: int) -> Attack:
     text, _ = random_drum(rng, track, inch=inch, ccw=rng.random() < 0.5, undercut=undercut, led=led)
     roller = number_after(text.split("follower:")[1], "radius: ")
     cone = number_after(text, "taper: ") if led.startswith("cone") else 5.0
-    own = {
-        "axes": rng.choice(["[X, A]", *["[X, Y, A]"] * 5, "[A, X, Z]", "[X]"]),
-        "cutter": f"{roller * rng.choice([2.0, 2.0, 1.99, 1.9, 1.5, 1.2, 0.9, 2.1])!r}",
-        "feed": f"{rng.choice([*[300.0] * 6, 1e-6, 1e7]) / mm!r}",
-        "plunge": f"{60 / mm!r}",
-        "spindle": "2500",
-        "safe_height": f"{rng.choice([*[5.0] * 6, 1e-7]) / mm!r}",
-        "depth_of_cut": f"{rng.uniform(0.5, 20.0) / mm!r}",
-        "allowance": f"{rng.choice([0.2, 0.2, 3.0]) / mm!r}",
-        "decimals": rng.choice(["3", "5", "9"]),
-        "taper": f"{rng.choice([cone, cone, 1.0, 80.0])}",
-        "feed_mode": rng.choice(["inverse-time", "per-minute"]),
-    }
-    needed = ("axes", "cutter", "feed", "plunge", "spindle", "safe_height")
-    for key in ("allowance", "decimals", "feed_mode", "depth_of_cut", "taper", rng.choice(list(own))):
-        if rng.random() < (0.6 if key not in needed else 0.1):
-            own.pop(key, None)
-    options = ", ".join(f"{key}: {value}" for key, value in own.items())
+    axes = ["[X, A]", *["[X, Y, A]"] * 5, "[A, X, Z]", "[X]"]
+    diameters = [roller * by for by in (2.0, 2.0, 1.99, 1.9, 1.5, 1.2, 0.9, 2.1)]
+    options = program_keys(rng, axes, diameters, mm, cone)
     text = text.replace("files: [stl]", f"files: [{{gcode: {{{options}}}}}]")
     return Attack(f"milled drum {number}", ("export", "drum.yaml"), {"drum.yaml": text.encode()}, (0, 2))
 

@@ -12,6 +12,7 @@ from capabilities.indexing.made_indexers import Rollers, design_of, random_index
 from support.heavy import ezdxf
 
 from attacks.outcome import Attack
+from attacks.programs import program_keys
 from camgeo.schema.errors import RecipeErrors
 
 if TYPE_CHECKING:
@@ -24,7 +25,6 @@ REMEDY = re.compile(
     r"index\.yaml:\d+:\d+: (?P<path>[\w.]+): (?P<problem>[^,;\d]+)[^;]*; .*?"
     r"(?P<word>less than|at most|more than|at least|between) (?P<size>-?[\d.e+-]+)(?: \w+ and (?P<most>-?[\d.e+-]+))?"
 )
-NEEDED = ("axes", "cutter", "feed", "plunge", "spindle", "safe_height")
 SLIPS = (
     ("radius:", "raduis:"),
     ("depth", "deep"),
@@ -148,22 +148,8 @@ def milled(rng: Random, number: int) -> Attack:
     mm = 25.4 if inch else 1.0
     text = random_indexer(rng, rng.choice(["barrel"] * 5 + ["globoid"]), inch=inch, ccw=rng.random() < 0.5)
     roller = number_after(text, "roller: ")
-    own = {
-        "axes": rng.choice(["[X, A]", *["[X, Y, A]"] * 6, "[A, X, Z, Y]", "[X]"]),
-        "cutter": f"{roller * rng.choice([2.0, 2.0, 1.998, 1.9, 1.5, 0.9, 2.1])!r}",
-        "feed": f"{rng.choice([*[300.0] * 6, 1e-6, 1e7]) / mm!r}",
-        "plunge": f"{60 / mm!r}",
-        "spindle": "2500",
-        "safe_height": f"{rng.choice([*[5.0] * 6, 1e-7]) / mm!r}",
-        "depth_of_cut": f"{rng.uniform(0.5, 20.0) / mm!r}",
-        "allowance": f"{rng.choice([0.2, 0.2, 3.0]) / mm!r}",
-        "decimals": rng.choice(["3", "5", "9"]),
-        "feed_mode": rng.choice(["inverse-time", "per-minute"]),
-    }
-    for key in ("allowance", "decimals", "feed_mode", "depth_of_cut", rng.choice(list(own))):
-        if rng.random() < (0.6 if key not in NEEDED else 0.1):
-            own.pop(key, None)
-    options = ", ".join(f"{key}: {value}" for key, value in own.items())
+    axes = ["[X, A]", *["[X, Y, A]"] * 6, "[A, X, Z, Y]", "[X]"]
+    options = program_keys(rng, axes, [roller * by for by in (2.0, 2.0, 1.998, 1.9, 1.5, 0.9, 2.1)], mm)
     text = text.replace("files: [stl]", f"files: [{{gcode: {{{options}}}}}]")
 
     def judge(done: Done, _: Path) -> list[str]:  # 1 where a check of the cam fails, and not of the program
