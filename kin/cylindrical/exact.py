@@ -16,7 +16,7 @@ from kin.contour.arcs import Arcs
 from kin.contour.holes import farthest
 from kin.cylindrical.crossings import Crossings
 from kin.cylindrical.edges import Peak
-from kin.cylindrical.faces import BLANK, BORE, BOTTOM, FINE, FLOOR, TOP
+from kin.cylindrical.faces import BLANK, BORE, BOTTOM, FLOOR, TOP
 from kin.cylindrical.gauge import gauges_of
 from kin.cylindrical.judge import (
     CONTOUR,
@@ -43,6 +43,7 @@ from kin.read.errors import ReadError
 from kin.read.formats import format_of
 from kin.read.step.faces import RoundFace
 from kin.read.step.patch import Patch
+from kin.turned.bore import FINE
 
 if TYPE_CHECKING:
     from collections.abc import Sequence

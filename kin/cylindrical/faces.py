@@ -14,21 +14,18 @@ from typing import TYPE_CHECKING, TypeVar
 
 import numpy as np
 
-from kin.contour.arcs import Arcs
-from kin.contour.holes import farthest
-from kin.contour.nearest import nearest
 from kin.cylindrical.edges import Edges
 from kin.cylindrical.roller import BESIDE, Place, Worst
 from kin.numeric.angles import TURN
 from kin.numeric.arrays import paired
 from kin.numeric.records import dataclass, replace
+from kin.turned.bore import edges_off_bore, off_bore
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
     from numpy.typing import NDArray
 
-    from kin.contour.holes import Hole
     from kin.cylindrical.intent import DrumIntent
     from kin.cylindrical.roller import Gauge
     from kin.numeric.arrays import Array, Indices, Mask
@@ -37,7 +34,6 @@ if TYPE_CHECKING:
 Entry = TypeVar("Entry", bound=np.generic)
 
 BLANK, FLOOR, BOTTOM, TOP, BORE = "blank", "floor", "bottom", "top", "bore"
-FINE = 1e-2  # of the tolerance, to which the bore is measured
 NEAR = 0.1  # of the radius of a roller: what is farther below its flank holds it nowhere
 
 
@@ -236,8 +232,8 @@ def _inside(body: Body, drum: DrumIntent, name: str, corners: Indices) -> Array:
     if name in {BOTTOM, TOP}:
         return np.zeros(len(corners))
     if name == BORE and drum.bore is not None:
-        flat, number = _once(_between(body, corners)[..., :2].reshape(-1, 2))
-        off: Array = nearest(drum.bore.contour.as_arcs()[0], flat)[1][number].reshape(-1, 4).max(axis=1, initial=0.0)
+        flat = _between(body, corners)[..., :2].reshape(-1, 2)
+        off: Array = off_bore(drum.bore, flat).reshape(-1, 4).max(axis=1, initial=0.0)
         return off
     radius = drum.radius if name == BLANK else drum.floor
     flat = body.points[corners][..., :2]
@@ -295,26 +291,12 @@ def _plain(body: Body, drum: DrumIntent) -> dict[str, Array]:
     if not (whole and track.sides[0] < 0):
         faces[TOP] = np.abs(z - drum.length)
     if drum.bore is not None:
-        arcs = drum.bore.contour.as_arcs()[0]
         reach = float(np.abs(drum.bore.contour.box).max()) * math.sqrt(2.0)
         near = np.flatnonzero(r <= reach + 0.5 * (drum.radius - reach))
         off = np.full(len(r), np.inf)
-        flat = body.points[near, :2]
-        distinct, number = _once(flat)
-        off[near] = nearest(arcs, distinct)[1][number]
+        off[near] = off_bore(drum.bore, body.points[near, :2])
         faces[BORE] = off
     return faces
-
-
-def _once(points: Array) -> tuple[Array, Indices]:
-    """Points (k, 2) each once, and the number among them of each of the points (n, 2)."""
-    order = np.lexsort(points.T)
-    rising = points[order]
-    new = np.ones(len(points), dtype=np.bool_)
-    new[1:] = (rising[1:] != rising[:-1]).any(axis=1)
-    number = np.empty(len(points), dtype=np.intp)
-    number[order] = np.cumsum(new) - 1
-    return rising[new], number
 
 
 def _farthest(body: Body, drum: DrumIntent, what: tuple[str, float], own: Mask, off: Array) -> float:
@@ -331,20 +313,6 @@ def _farthest(body: Body, drum: DrumIntent, what: tuple[str, float], own: Mask, 
     a, b, _ = body.edges_of(own)
     start, last = body.points[a, :2], body.points[b, :2]
     if name == BORE and drum.bore is not None:
-        return max(worst, _off_outline(drum.bore, start, last, FINE * tolerance))
+        return max(worst, edges_off_bore(drum.bore, start, last, tolerance))
     radius = drum.radius if name == BLANK else drum.floor
     return max(worst, radius - float(least_radius(start, last).min()))
-
-
-def _off_outline(bore: Hole, start: Array, last: Array, fine: float) -> float:
-    """Greatest distance, mm, of lines from the outline of a bore, seen along z, to within `fine`."""
-    back = (start[:, 0] > last[:, 0]) | ((start[:, 0] == last[:, 0]) & (start[:, 1] > last[:, 1]))
-    pairs = np.where(back[:, None], np.hstack([last, start]), np.hstack([start, last]))
-    pairs, _ = _once(pairs[(pairs[:, :2] != pairs[:, 2:]).any(axis=1)])
-    if not len(pairs):
-        return 0.0
-    way = pairs[:, 2:] - pairs[:, :2]
-    length = np.hypot(way[:, 0], way[:, 1])
-    lines = Arcs(pairs[:, :2], way / length[:, None], np.zeros(len(length)), length)
-    outline = bore.contour.as_arcs()[0]
-    return farthest(lines, outline, float(np.abs(outline.curvature).max()), fine)

@@ -14,10 +14,9 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from kin.contour.arcs import Arcs
-from kin.contour.holes import farthest
 from kin.contour.nearest import nearest
 from kin.numeric.records import dataclass
+from kin.turned.bore import edges_off_bore, off_bore
 
 if TYPE_CHECKING:
     from kin.contour.holes import Hole
@@ -26,7 +25,6 @@ if TYPE_CHECKING:
     from kin.read.mesh.mesh import Mesh
 
 BLANK, FLOOR, BOTTOM, TOP, BORE = "blank", "floor", "bottom", "top", "bore"
-FINE = 1e-2  # of the tolerance, to which the bore is measured
 PER_PIECE = 64  # places of a piece of the bore's outline
 HALVINGS = 5  # of triangles whose inside is not known well enough
 
@@ -142,7 +140,8 @@ def sorted_faces(body: Body, intent: IndexIntent, offs: dict[str, Array], away: 
     off = {name: float(row[kind == k].max(initial=-math.inf)) for k, (name, row) in enumerate(offs.items())}
     if intent.bore is not None and off[BORE] > -math.inf:
         a, b = body.edges_of(np.flatnonzero(kind == kinds.index(BORE)))
-        off[BORE] = max(off[BORE], _off_outline(intent.bore, body.points[a, :2], body.points[b, :2], FINE * tolerance))
+        edges = body.points[a, :2], body.points[b, :2]
+        off[BORE] = max(off[BORE], edges_off_bore(intent.bore, *edges, tolerance))
     return Faces(kinds, kind, {name: math.nan if one == -math.inf else one for name, one in off.items()}, least)
 
 
@@ -194,21 +193,5 @@ def _off_bore(body: Body, bore: Hole) -> Array:
     off = np.full(len(body.points), np.inf)
     near = np.hypot(body.points[:, 0], body.points[:, 1]) <= reach
     if near.any():
-        flat, number = np.unique(body.points[near, :2], axis=0, return_inverse=True)
-        off[near] = nearest(bore.contour.as_arcs()[0], flat)[1][number.ravel()]
+        off[near] = off_bore(bore, body.points[near, :2])
     return off
-
-
-def _off_outline(bore: Hole, start: Array, last: Array, fine: float) -> float:
-    """Greatest distance, mm, of lines from the outline of a bore, seen along z, to within `fine`."""
-    flat = np.hstack([start, last])
-    flat = np.unique(np.where(start[:, :1] > last[:, :1], flat[:, [2, 3, 0, 1]], flat), axis=0)
-    way = flat[:, 2:] - flat[:, :2]
-    length = np.hypot(way[:, 0], way[:, 1])
-    moved = length > 0.0
-    if not moved.any():
-        return 0.0
-    way, length = way[moved], length[moved]
-    lines = Arcs(flat[moved, :2], way / length[:, None], np.zeros(len(length)), length)
-    outline = bore.contour.as_arcs()[0]
-    return farthest(lines, outline, float(np.abs(outline.curvature).max()), fine)

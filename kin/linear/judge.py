@@ -95,13 +95,11 @@ def verify(path: Path, plate: PlateIntent, limits: Limits, units: float | None =
     return replace(verdict, checks=tuple(about(check, path.name) for check in verdict.checks))
 
 
-def judge_chains(
-    chains: Sequence[ClosedContour], plate: PlateIntent, limits: Limits, kind: str = "", uneven: float = 0.0
-) -> PlateVerdict:
+def judge_chains(chains: Sequence[ClosedContour], plate: PlateIntent, limits: Limits, kind: str = "") -> PlateVerdict:
     """Judge closed chains, mm, as if not mirrored, as a drawing, section or program has them: the outermost first.
 
-    With a groove, and no outline in the intent, there is none among them. `uneven`, mm, bounds the error of the chains
-    themselves. Where a groove has no chain the verdict says so.
+    With a groove, and no outline in the intent, there is none among them. Where a groove has no chain the verdict says
+    so.
     """
     flanks = _flanks(plate)
     chains = [chain._replace(contour=counter_clockwise(chain.contour)) for chain in chains]
@@ -111,9 +109,9 @@ def judge_chains(
         return PlateVerdict(kind, (failed("readable", str(error)),))
     checks = [count_check("closed", crossing_places([chain.contour]))]
     if plate.outline is not None:
-        checks.append(_outline_check(chains[0].contour, plate.outline, limits.tolerance, uneven))
+        checks.append(_outline_check(chains[0].contour, plate.outline, limits.tolerance, 0.0))
     checks += _drawn_checks(_holes(chains, chain, plate), [], plate, limits.tolerance)
-    return _judged(_Read(checks, tuple(chains), chain, uneven=uneven), plate, flanks, limits, kind)
+    return _judged(_Read(checks, tuple(chains), chain), plate, flanks, limits, kind)
 
 
 def positions(contour: Contour, follower: LinearFollower, u: Array) -> Array:
@@ -315,7 +313,7 @@ def _of_drawing(path: Path, plate: PlateIntent, flanks: Sequence[Flank], limits:
     unit = units_check(drawing.units_mm, units, plate.mm, lambda: _size(chains[0].contour, plate, flanks))
     checks = [unit, closed_check(drawing, scale, outlines, limits.gap, uneven)]
     if plate.outline is not None:
-        checks.append(_outline_check(chains[0].contour, plate.outline, limits.tolerance, uneven))
+        checks.append(_outline_check(chains[0].contour, plate.outline, limits.tolerance, 0.0))
     engravings = [ClosedContour(contour) for contour in drawing.engraved]
     marks = [mark.contour for mark in _turned_back(engravings, scale, mirrored=plate.mirrored)]
     checks += _drawn_checks(_holes(chains, flank, plate), marks, plate, limits.tolerance)
