@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import ast
+import functools
 import os
 import re
 import subprocess
@@ -133,12 +134,13 @@ def demand_that_all_works(folder: Path, places: list[str], recipes: list[str]) -
         pytest.fail(f"{errors}" + "\n".join(failures or output.splitlines()[-5:]), pytrace=False)
 
 
-def strings(path: Path) -> set[str]:
-    """Every text that a module holds, but its docstrings."""
-    nodes = list(ast.walk(ast.parse(path.read_text(encoding="utf-8"))))
+@functools.cache  # most modules are the same without one capability as without another
+def strings(module: str) -> frozenset[str]:
+    """Every text that a module, given by its own text, holds, but its docstrings."""
+    nodes = list(ast.walk(ast.parse(module)))
     docstrings = {id(node.value) for node in nodes if isinstance(node, ast.Expr)}
     constants = [node for node in nodes if isinstance(node, ast.Constant) and id(node) not in docstrings]
-    return {node.value for node in constants if isinstance(node.value, str)}
+    return frozenset(node.value for node in constants if isinstance(node.value, str))
 
 
 @pytest.mark.slow
@@ -160,7 +162,8 @@ def test_no_test_that_is_left_reads_a_recipe_that_is_gone(copied: tuple[str, Pat
         return
     tests, stems = folder / "tests", "|".join(re.escape(path.stem) for path in gone)
     read = re.compile(rf"(?:^|[/ ])(?:{stems})(?:\.yaml)?(?:$| )")
-    hits = [(path.name, text) for path in tests.rglob("*.py") for text in strings(path) if read.search(text)]
+    texts = [(path.name, strings(path.read_text(encoding="utf-8"))) for path in tests.rglob("*.py")]
+    hits = [(name, text) for name, held in texts for text in held if read.search(text)]
     assert hits == []
 
 
