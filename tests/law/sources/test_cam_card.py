@@ -104,7 +104,7 @@ def test_the_search_goes_on_where_the_peak_bends_down_towards_its_valley(count, 
 @pytest.mark.slow
 @pytest.mark.parametrize("count", [1, 2, 3])
 def test_no_angle_has_a_lower_peak_by_another_solver(count):
-    """The mixtures of all members at 160 angles by scipy, the acceleration bounded at 400 places."""
+    """The mixtures of all members at 40 angles by scipy, the acceleration bounded at 400 places."""
     pytest.importorskip("scipy")
     from kin.law.sources.cam_card import _members
 
@@ -113,7 +113,7 @@ def test_no_angle_has_a_lower_peak_by_another_solver(count):
     factors = np.array([coefficients(member) for member in _members()])
     bends = np.einsum("nk,unk->un", factors * powers * (powers - 1), u[:, None, None] ** (powers - 2))
     least = math.inf
-    for half in np.radians(np.linspace(CARD[min(count, 2) - 1][1] / 4 + 0.5, 110.0, 160)):
+    for half in np.radians(np.linspace(CARD[min(count, 2) - 1][1] / 4 + 0.5, 110.0, 40)):
         rows = [1.0 + (factors * (math.radians(d / 4) / half) ** powers).sum(axis=1) for _, d in CARD[:count]]
         equal = np.column_stack([np.vstack([np.ones(len(factors)), *rows]), np.zeros(count + 1)])
         right = [1.0, *(lift / LIFT for lift, _ in CARD[:count])]
