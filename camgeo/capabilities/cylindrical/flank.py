@@ -173,7 +173,7 @@ class Flank:
         return self._contact(theta, pose, self.reached(pose, r))
 
     def polar(self, theta: Array, r: float) -> Array:
-        """Polar angles (n,), rad, at which the cylinder r, mm, is touched at shaft angles theta (n,); as `on` raises."""
+        """Polar angles (n,), rad, of contacts at shaft angles theta (n,) on the cylinder r, mm; raises as `on` does."""
         pose = self.pose(theta)
         rho = self.reached(pose, r)
         touch = self._touch(pose, rho)
