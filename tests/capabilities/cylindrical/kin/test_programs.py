@@ -266,6 +266,7 @@ def test_a_groove_that_crosses_itself_is_cut_by_all_its_turns(tmp_path):
     assert not judged_turns(tmp_path, text_of_turns(), once).ok
 
 
+@pytest.mark.thin(2)
 @pytest.mark.parametrize(
     ("fault", "names"),
     [
@@ -545,6 +546,7 @@ def on_flank(gauge, motion, theta, rho):
     return np.stack([x, y, gauge.level + motion(theta) + up], axis=-1)
 
 
+@pytest.mark.thin(2)
 @pytest.mark.parametrize(
     ("beside", "outside", "inside"),
     [(False, 0.00212883859238, 0.168907879811), (True, 4.81844361801e-6, 0.0175138654945)],

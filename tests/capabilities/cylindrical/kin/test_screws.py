@@ -67,6 +67,12 @@ def wide():
 
 
 @pytest.fixture(scope="module")
+def of_wide(wide):
+    """The verdict on it."""
+    return judged(wide, SCREW)
+
+
+@pytest.fixture(scope="module")
 def spiral():
     return cut(SPIRAL)
 
@@ -97,6 +103,7 @@ def test_a_sound_screw_is_accepted_with_what_was_measured(name, request):
     assert 0.001 < worst < 0.0025
 
 
+@pytest.mark.thin(2)
 @pytest.mark.parametrize("columns", [60, 90])
 def test_a_tall_screw_in_wide_triangles_is_accepted(columns):
     """Its ends lie far below turns at the other one, farther than a step of Newton's method is good for."""
@@ -109,8 +116,9 @@ def test_a_tall_screw_in_wide_triangles_is_accepted(columns):
     assert max(flank.measured_error for flank in verdict.flanks) > 0.5 * off.max()
 
 
-def test_the_motion_is_that_of_points_of_the_file_in_every_turn(wide):
-    verdict = judged(wide, SCREW)
+def test_the_motion_is_that_of_points_of_the_file_in_every_turn(wide, of_wide):
+    verdict = of_wide
+    assert verdict.ok, [check for check in verdict.checks if not check.ok]
     chance = np.random.default_rng(2)
     points = walls_of(SCREW, wide, chance, 60_000)
     theta = chance.uniform(0.0, 6.0 * TURN, 30)
@@ -164,17 +172,21 @@ def test_the_longest_gap_is_that_of_two_helices():
         assert max(gap.length for gap in lower) == pytest.approx(5.0 * (1.0 + slope**2) / slope, rel=2e-4)
 
 
-def test_a_roller_drops_into_a_crossing_and_so_does_a_shoe_that_is_too_short(wide):
+def test_a_roller_drops_into_a_crossing_and_so_does_a_shoe_that_is_too_short(wide, of_wide):
     alone = judged(wide, replace(SCREW, shoe=None))
     assert refused(alone) == {("crossings", "")}
     assert "the roller drops into the groove" in check_of(alone, "crossings").detail
-    for shoe, ok in ((47.0, False), (48.5, True)):
-        verdict = judged(wide, replace(SCREW, shoe=shoe))
-        assert verdict.ok == ok
+    for shoe, verdict in ((47.0, judged(wide, replace(SCREW, shoe=47.0))), (60.0, of_wide)):
+        assert verdict.ok == (shoe == 60.0)
         crossings = check_of(verdict, "crossings")
         # the file may be off by the tolerance
         assert crossings.value == pytest.approx(47.654 + 2.0 * TOLERANCE / 0.2098, abs=0.02)
         assert crossings.limit == shoe
+
+
+@pytest.mark.slow
+def test_a_shoe_that_just_bridges_its_crossings_is_accepted(wide):
+    assert judged(wide, replace(SCREW, shoe=48.5)).ok
 
 
 # --- planted faults ---------------------------------------------------------------------------------------------------
@@ -342,6 +354,7 @@ def test_a_shoe_that_does_not_pass_a_bend_is_refused():
     assert refused(verdict) == {("shoe", "")}
 
 
+@pytest.mark.slow  # two solids; every verdict on a screw has its volume
 def test_the_volume_of_a_crossing_groove_is_that_of_ever_finer_meshes():
     drum = SPIRAL.intent()
     exact, remainder = volume_within(drum, gauges_of(drum))
@@ -393,7 +406,7 @@ def looked_at(drum, surface, flank=0, carried=()):
     return look(gauges[flank], [surface], TOLERANCE, 720 * drum.motion.turns, Crossed(gauges, carries))
 
 
-@pytest.mark.costly("patches over all turns against the rollers of all")
+@pytest.mark.slow  # patches over all turns against the rollers of all, three times
 def test_patches_of_a_flank_stand_in_the_way_of_other_turns_where_it_goes_on():
     """Depths within the roller of another turn are those of positions; without such patches there are none."""
     flank, count = SPIRAL.flanks[0], COLUMNS * SPIRAL.motion.turns
