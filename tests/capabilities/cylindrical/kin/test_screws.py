@@ -406,7 +406,7 @@ def looked_at(drum, surface, flank=0, carried=()):
     return look(gauges[flank], [surface], TOLERANCE, 720 * drum.motion.turns, Crossed(gauges, carries))
 
 
-@pytest.mark.slow  # patches over all turns against the rollers of all, three times
+@pytest.mark.costly("patches over all turns against the rollers of all")
 def test_patches_of_a_flank_stand_in_the_way_of_other_turns_where_it_goes_on():
     """Depths within the roller of another turn are those of positions; without such patches there are none."""
     flank, count = SPIRAL.flanks[0], COLUMNS * SPIRAL.motion.turns
