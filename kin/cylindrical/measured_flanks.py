@@ -289,7 +289,11 @@ def _best(
     """The value of an unknown that brings points to the drum; None where none of those tried does."""
     values = np.zeros((len(tried), len(UNKNOWNS)))
     values[:, unknown] = tried
-    off = [_off(gauges, drum, _moved(few[0], row), few[1]) for row in values]
+    places = np.concatenate([_moved(few[0], row) for row in values])
+    e = np.empty(len(places))
+    for each in _sorted(gauges, drum, places, np.tile(few[1], len(tried))):
+        e[each.rows] = each.e
+    off = np.quantile(np.where(np.isfinite(e), np.abs(e), np.inf).reshape(len(tried), -1), MOST, axis=1)
     best = int(np.argmin(off))
     return float(tried[best]) if off[best] <= ALIKE * drum.follower.radius else None
 

@@ -21,7 +21,7 @@ from kin.numeric.angles import TURN
 
 if TYPE_CHECKING:
     from camgeo.capabilities.cylindrical.design import DrumDesign
-    from camgeo.capabilities.cylindrical.flank import Flank
+    from camgeo.capabilities.cylindrical.flank import Flank, Pose
     from camgeo.curve.curve import Side
     from camgeo.curve.extremes import Extreme
     from camgeo.curve.rates import Series
@@ -58,8 +58,13 @@ def steepest(design: DrumDesign, order: int = 1) -> tuple[float, float]:
 
 def outer_end(design: DrumDesign, name: str, theta: Array) -> Array:
     """Distance along the roller (n,), mm, at which contact with a flank ends outside: at its end, or the blank's."""
-    recipe, flank = design.recipe, design.flanks[name]
-    return np.minimum(recipe.roller.outer, flank.reached(flank.pose(theta), recipe.radius))
+    return _outer_end(design, name, design.flanks[name].pose(theta))
+
+
+def _outer_end(design: DrumDesign, name: str, pose: Pose) -> Array:
+    """`outer_end` at poses."""
+    recipe = design.recipe
+    return np.minimum(recipe.roller.outer, design.flanks[name].reached(pose, recipe.radius))
 
 
 def carried_from(design: DrumDesign, name: str, theta: Array) -> Array:
@@ -145,8 +150,10 @@ def steepest_contacts(design: DrumDesign) -> dict[str, tuple[float, float]]:
 
     def at(rho: float | None) -> tuple[float, float]:
         def angle(theta: Array, name: str) -> Array:
-            ends = outer_end(design, name, theta) if rho is None else np.full_like(theta, rho)
-            return np.asarray(np.abs(design.flanks[name].pressure(theta, ends)))
+            flank = design.flanks[name]
+            pose = flank.pose(theta)
+            ends = _outer_end(design, name, pose) if rho is None else np.full_like(theta, rho)
+            return np.asarray(np.abs(flank.steepness(pose, ends)))
 
         return max(design.greatest(partial(angle, name=name)) for name in design.flanks)
 
@@ -160,7 +167,8 @@ def play_at(design: DrumDesign, theta: Array) -> Array:
     It is the clearance over cos alpha where that is least along the line of contact.
     """
     clearance, flank = design.recipe.track.clearance, design.flanks["upper"]
-    angles = np.abs([flank.pressure(theta, rho) for rho in _along(design, "upper", theta)])
+    pose = flank.pose(theta)
+    angles = np.abs(flank.steepness(pose, _along(design, "upper", theta, pose)))
     return np.asarray(clearance / np.cos(angles.min(axis=0)) / flank.guide.reach)
 
 
@@ -204,7 +212,7 @@ def at_angle(flank: Flank, phi: Array, r: float, theta: Array) -> Array:
     low, high = theta - 0.5 * math.pi, theta + 0.5 * math.pi
     for _ in range(NEWTON):  # on a regular flank the polar angle rises
         middle = 0.5 * (low + high)
-        less = flank.on(middle, r).phi < phi
+        less = flank.polar(middle, r) < phi
         low, high = np.where(less, middle, low), np.where(less, high, middle)
     return 0.5 * (low + high)
 
@@ -213,28 +221,31 @@ def _curved(design: DrumDesign) -> list[Figure]:
     """Least radius of both bodies together across the line of contact, mm; none where a cut leaves a sharp edge."""
     if any(design.tips.values()):
         return []
-    worst = [design.greatest(lambda theta, name=name: _sharpest(design, name, theta)[0]) for name in design.flanks]  # type: ignore[misc]
+    worst = [design.greatest(lambda theta, name=name: _sharpest(design, name, theta)) for name in design.flanks]  # type: ignore[misc]
     curvature, at = max(worst)
     return [Figure("mating-radius", 1.0 / curvature if curvature > 0.0 else math.inf, "mm", math.degrees(at))]
 
 
-def _along(design: DrumDesign, name: str, theta: Array) -> Array:
-    """Distances (ALONG, n) along the line that carries, mm."""
-    begin, end = carried_from(design, name, theta), outer_end(design, name, theta)
+def _along(design: DrumDesign, name: str, theta: Array, pose: Pose) -> Array:
+    """Distances (ALONG, n) along the line that carries, mm, at shaft angles (n,), rad, and their poses."""
+    begin, end = carried_from(design, name, theta), _outer_end(design, name, pose)
     share = np.linspace(0.0, 1.0, ALONG)[:, None]
     return np.minimum(begin, end) * (1.0 - share) + end * share
 
 
-def _sharpest(design: DrumDesign, name: str, theta: Array) -> tuple[Array, Array]:
-    """Greatest sum of curvatures along the line of contact (n,), 1/mm, and all of them (ALONG, n)."""
-    flank = design.flanks[name]
-    rows = np.stack([flank.curvature(theta, rho) for rho in _along(design, name, theta)])
+def _sharpest(design: DrumDesign, name: str, theta: Array) -> Array:
+    """Greatest sum of curvatures along the line of contact (n,), 1/mm."""
+    pose = design.flanks[name].pose(theta)
+    sharpest: Array = _bent(design, name, pose, _along(design, name, theta, pose)).max(axis=0)
+    return sharpest
+
+
+def _bent(design: DrumDesign, name: str, pose: Pose, rho: Array) -> Array:
+    """Sums of curvatures (m, n), 1/mm, at poses and distances rho (m, n) along the line of contact, mm."""
+    flank, roller = design.flanks[name], design.recipe.roller
     # a shoe's side is bent less than a roller
-    rows = np.maximum(
-        rows - (1.0 / flank.radius - 1.0 / (design.recipe.roller.side + flank.radius - design.recipe.roller.radius)),
-        0.0,
-    )
-    return rows.max(axis=0), rows
+    less = 1.0 / flank.radius - 1.0 / (roller.side + flank.radius - roller.radius)
+    return np.maximum(flank.bent(pose, rho) - less, 0.0)
 
 
 # --- in time, under load ----------------------------------------------------------------------------------------------
@@ -278,9 +289,11 @@ def _loaded(design: DrumDesign, steep: tuple[float, float]) -> list[Figure]:
     load, drum, roller = drive.load, drive.material, drive.roller_material or drive.material
 
     def pressure(theta: Array, name: str, along: slice) -> Array:
-        length, flank = contact_length(design, name, theta), design.flanks[name]
-        rho, curvature = _along(design, name, theta)[along], _sharpest(design, name, theta)[1][along]
-        force = load / np.cos([flank.pressure(theta, place) for place in rho]) / math.cos(taper)
+        flank = design.flanks[name]
+        pose = flank.pose(theta)
+        length = _outer_end(design, name, pose) - carried_from(design, name, theta)
+        rho = _along(design, name, theta, pose)[along]
+        curvature, force = _bent(design, name, pose, rho), load / np.cos(flank.steepness(pose, rho)) / math.cos(taper)
         width = np.where(length > 0.0, length, np.inf)
         found: Array = line_pressure(force * curvature / width, np.ones_like(force), 1.0, drum, roller).max(axis=0)
         return found

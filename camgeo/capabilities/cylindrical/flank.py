@@ -172,6 +172,13 @@ class Flank:
         pose = self.pose(theta, at)
         return self._contact(theta, pose, self.reached(pose, r))
 
+    def polar(self, theta: Array, r: float) -> Array:
+        """Polar angles (n,), rad, of contacts at shaft angles theta (n,) on the cylinder r, mm; raises as `on` does."""
+        pose = self.pose(theta)
+        rho = self.reached(pose, r)
+        touch = self._touch(pose, rho)
+        return np.asarray(theta + np.arctan2(pose.y - self.side * touch.radius * touch.sine, rho))
+
     def radii(self, pose: Pose, rho: Array) -> Array:
         """Radii of the cylinders (n,), mm, touched at poses and distances rho along the roller's axis, both (n,)."""
         touch = self._touch(pose, rho)
@@ -237,7 +244,10 @@ class Flank:
 
         It is M (1 + (R sin a/(M cos d))^2)/(R D).
         """
-        pose = self.pose(theta, at)
+        return self.bent(self.pose(theta, at), rho)
+
+    def bent(self, pose: Pose, rho: Array) -> Array:
+        """`curvature` at poses and distances rho along the roller, of shapes that go together."""
         touch = self._touch(pose, rho)
         m = touch.w * touch.beside
         part = 1.0 + (touch.radius * touch.sine / (m * math.cos(self.taper))) ** 2

@@ -22,8 +22,8 @@ def law_at(law: str, u: Any, m: Any = np) -> Any:
     if law == "cycloidal":
         return u - m.sin(2 * m.pi * u) / (2 * m.pi)
     if law == "polynomial-345":
-        return 10 * u**3 - 15 * u**4 + 6 * u**5
-    return 35 * u**4 - 84 * u**5 + 70 * u**6 - 20 * u**7
+        return u * u * u * (10 - u * (15 - 6 * u))
+    return u * u * u * u * (35 - u * (84 - u * (70 - 20 * u)))
 
 
 class Lift:

@@ -23,7 +23,7 @@ from camgeo.cli.main import main
 from kin.cylindrical.inspected import read_flank_points
 from kin.read.errors import ReadError
 
-PLAY = changed(GROOVE, ("{depth: 12.5}", "{depth: 12.5, clearance: 0.03}"), ("[stl]", "[{csv: {as: flank, step: 1}}]"))
+PLAY = changed(GROOVE, ("{depth: 12.5}", "{depth: 12.5, clearance: 0.03}"), ("[stl]", "[{csv: {as: flank, step: 2}}]"))
 ASKED = f"made: {{profile: 0.03}}\nverify: {{motion_error: 0.01}}\n{PLAY}"
 
 

@@ -48,6 +48,7 @@ ON_ARM = Lift(
 )
 
 
+@pytest.mark.thin(2)
 @pytest.mark.parametrize(("head", "sign"), [("", 1.0), ("rotation: ccw\n", -1.0)])
 def test_rollers_of_an_arm_are_where_it_leads_them(head: str, sign: float) -> None:
     """Both of a rib, on one body; to the right of the viewer y counts, or -y of a drum that turns the other way."""

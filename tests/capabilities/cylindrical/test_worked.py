@@ -55,7 +55,7 @@ def close(found: object, wanted: object) -> None:
 
 
 def figure(text: str, name: str) -> float:
-    return next(each.value for each in figures_of(design_of(text)) if each.name == name)
+    return next(each.value for each in figures_of(shared_design(text)) if each.name == name)
 
 
 CASES = [  # theta, rho, flank, r, phi, contact angle, z
@@ -75,7 +75,7 @@ CASES = [  # theta, rho, flank, r, phi, contact angle, z
 
 
 def test_the_flanks_of_a_groove() -> None:
-    design = design_of(GROOVE)
+    design = shared_design(GROOVE)
     for theta, rho, name, r, phi, angle, z in CASES:
         at = np.array([math.radians(theta)])
         contact = design.flanks[name].along(at, np.array([float(rho)]))
@@ -88,7 +88,7 @@ def test_the_flanks_of_a_groove() -> None:
 
 
 def test_pressure_angles_along_the_roller() -> None:
-    values = {each.name: each.value for each in figures_of(design_of(GROOVE))}
+    values = {each.name: each.value for each in figures_of(shared_design(GROOVE))}
     close([values["pressure-angle"], values["pressure-angle-middle"]], [45.1482721410, 40.9618320715])
     # the blank ends the contact before the roller does: at 49.63 in place of 50, where the formula says 37.38
     assert values["pressure-angle-outer"] == pytest.approx(37.59, abs=5e-3)
@@ -99,7 +99,7 @@ def test_pressure_angles_along_the_roller() -> None:
 
 
 def test_a_flank_on_the_cylinder_of_the_blank() -> None:
-    flank = design_of(GROOVE).flanks["lower"]
+    flank = shared_design(GROOVE).flanks["lower"]
     contact = flank.on(np.radians([30.0, 60.0]), 50.0)
     close(50.0 * contact.phi, [29.7592556974, 58.4745116351])
     close(contact.z - LEVEL, [-5.70484645319, 12.0755272731])
@@ -169,7 +169,7 @@ OTHERS = [  # cones, a roller beside a radius, and arms: text, height of z in th
     ("text", "level", "rows"), OTHERS, ids=["apex", "cone", "beside", "arm", "leading", "cone-arm"]
 )
 def test_the_flanks_of_other_followers(text: str, level: float, rows: list[tuple]) -> None:
-    design = design_of(text)
+    design = shared_design(text)
     for theta, rho, name, r, phi, angle, z in rows:
         at = np.array([math.radians(theta)])
         contact = design.flanks[name].along(at, np.array([float(rho)]))
@@ -184,7 +184,7 @@ def test_the_flanks_of_other_followers(text: str, level: float, rows: list[tuple
 @pytest.mark.parametrize("text", [ARM, LEADING])
 def test_pressure_angles_on_an_arm(text: str) -> None:
     theta = np.linspace(0.0, 2.0 * math.pi, 200001)
-    flank = design_of(text).flanks["lower"]
+    flank = shared_design(text).flanks["lower"]
     for rho, wanted in zip((50.0, 38.0), STEEP_ARM, strict=True):
         assert math.degrees(np.abs(flank.pressure(theta, np.full_like(theta, rho))).max()) == pytest.approx(
             wanted, abs=1e-7
@@ -194,7 +194,7 @@ def test_pressure_angles_on_an_arm(text: str) -> None:
 def test_the_contact_angle_of_a_cone() -> None:
     """At 60 degrees, where the slope is the greatest: tan a = S'/(rho + R tan d)."""
     close(
-        math.degrees(design_of(CONE).flanks["lower"].along(np.array([math.pi / 3]), np.array([44.0])).angle[0]),
+        math.degrees(shared_design(CONE).flanks["lower"].along(np.array([math.pi / 3]), np.array([44.0])).angle[0]),
         39.5389734592,
     )
 
@@ -204,7 +204,7 @@ def test_the_contact_angle_of_a_cone() -> None:
 )
 def test_bends_and_regularity_are_those_of_the_places(text: str) -> None:
     """Bounds over cells of no width, D and curvature, against difference quotients of places."""
-    for flank in design_of(text).flanks.values():
+    for flank in shared_design(text).flanks.values():
         theta, r, h, w = np.radians([20.0, 47.0, 101.0, 193.0, 222.0, 290.0]), np.linspace(38.5, 49.5, 6), 1e-3, 1e-9
 
         def place(t: np.ndarray, radius: np.ndarray, flank: Flank = flank) -> np.ndarray:
@@ -243,7 +243,7 @@ def test_bends_and_regularity_are_those_of_the_places(text: str) -> None:
 @pytest.mark.parametrize("text", [CONE, BESIDE, CONE_ON_ARM], ids=["cone", "beside", "cone-arm"])
 def test_curvature_across_the_line_of_other_followers(text: str) -> None:
     """The gap between roller and flank on either side of the line of contact, square to it in their common plane."""
-    for name, flank in design_of(text).flanks.items():
+    for name, flank in shared_design(text).flanks.items():
         theta, rho, d = np.radians([75.0]), np.array([41.0]), 0.02
         contact = flank.along(theta, rho)
         normal = flank.normal(contact, theta)[0]
@@ -319,13 +319,13 @@ def helix(radius: float, roller: float, angle: float, floor: float) -> str:
     ],
 )
 def test_what_an_offset_path_costs(radius: float, roller: float, angle: float, wanted: float) -> None:
-    found, _ = offset_off(design_of(helix(radius, roller, angle, radius - 1.0)), float(radius))
+    found, _ = offset_off(shared_design(helix(radius, roller, angle, radius - 1.0)), float(radius))
     close(found, wanted)
 
 
 def test_what_radial_walls_cost() -> None:
     """Of a helix of 30 degrees from 50 to 38 mm it is 1.02628; a cam's motion is steep at one place alone."""
-    design = design_of(GROOVE)
+    design = shared_design(GROOVE)
     value, other, at = wrapped_off(design, 50.0)
     assert other == 38.0
     flank = design.flanks["lower"] if design.law.derivatives(np.array([at]), 1)[1][0] else design.flanks["upper"]
@@ -366,7 +366,7 @@ def height(side: int, r: float, phi: float, roller: float = 10) -> mpmath.mpf:
 
 def test_places_in_no_table() -> None:
     """The closed form on any cylinder is the envelope of positions: at other angles, and for a clearance."""
-    design = design_of(changed(GROOVE, ("depth: 12.5", "depth: 12.5, clearance: 0.3")))
+    design = shared_design(changed(GROOVE, ("depth: 12.5", "depth: 12.5, clearance: 0.3")))
     for theta, r, name, roller in ((17.0, 41.3, "lower", 10), (101.0, 49.2, "upper", 10.3), (288.5, 37.6, "lower", 10)):
         flank = design.flanks[name]
         contact = flank.on(np.array([math.radians(theta)]), r)
@@ -408,7 +408,7 @@ def test_both_ends_of_a_cut_are_one_place() -> None:
 
 
 def test_a_rib() -> None:
-    design = design_of(RIB)
+    design = shared_design(RIB)
     flank = design.flanks["lower"]
     for r, wanted in ((38.0, 21.9182951883), (50.0, 24.9094704840)):
         theta = np.radians(np.linspace(40.0, 60.0, 2001))
@@ -460,7 +460,7 @@ def test_figures_of_an_arm() -> None:
     ):
         close(values[name][0], wanted)
         assert values[name][1] == unit
-    assert {"off-radius", "axial-thrust"}.isdisjoint(each.name for each in figures_of(design_of(GROOVE)))
+    assert {"off-radius", "axial-thrust"}.isdisjoint(each.name for each in figures_of(shared_design(GROOVE)))
 
 
 def test_a_rib_on_an_arm() -> None:
@@ -474,7 +474,7 @@ def test_a_rib_on_an_arm() -> None:
 
 
 def test_curvature_across_the_line() -> None:
-    flanks = design_of(GROOVE).flanks
+    flanks = shared_design(GROOVE).flanks
     for theta, rho, name, wanted in (
         (30, 44, "lower", 0.0824274423323),
         (90, 38, "lower", 0.143259107194),

@@ -41,13 +41,13 @@ FORMULAS = {
         lambda u: TURN * np.sin(TURN * u),
     ),
     "polynomial-345": (
-        lambda u: u**3 * (10.0 - 15.0 * u + 6.0 * u**2),
+        lambda u: u * u * u * (10.0 - 15.0 * u + 6.0 * u**2),
         lambda u: 30.0 * u**2 * (1.0 - u) ** 2,
         lambda u: 60.0 * u * (1.0 - 3.0 * u + 2.0 * u**2),
     ),
     "polynomial-4567": (
-        lambda u: u**4 * (35.0 - 84.0 * u + 70.0 * u**2 - 20.0 * u**3),
-        lambda u: 140.0 * u**3 * (1.0 - u) ** 3,
+        lambda u: u**2 * u**2 * (35.0 - u * (84.0 - u * (70.0 - 20.0 * u))),
+        lambda u: 140.0 * (u * (1.0 - u)) ** 2 * u * (1.0 - u),
         lambda u: 420.0 * u**2 * (1.0 - u) ** 2 * (1.0 - 2.0 * u),
     ),
     "harmonic": (
@@ -387,7 +387,7 @@ def binary(places, corners):
     return b"\0" * 80 + np.uint32(len(corners)).tobytes() + record.tobytes()
 
 
-def sought(function, at, width, best, rounds=7):
+def sought(function, at, width, best, rounds=4):
     """Greatest (or least) values (n,) of a function of angles (n, m) about `at` (n, m), by ever closer grids."""
     for _ in range(rounds):
         value = function(at)

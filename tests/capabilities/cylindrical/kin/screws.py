@@ -106,8 +106,11 @@ def plain(body):
     """
     mesh = body.simplify(FINE).to_mesh64()
     places = np.asarray(mesh.vert_properties[:, :3]).astype(np.float32)
-    places, number = np.unique(places, axis=0, return_inverse=True)
-    corners = number.reshape(-1)[np.asarray(mesh.tri_verts, dtype=np.intp)]
+    order = np.lexsort(places.T)
+    first = np.append(True, (np.diff(places[order], axis=0) != 0.0).any(axis=1))
+    number = np.empty(len(places), dtype=np.intp)
+    number[order] = np.cumsum(first) - 1
+    places, corners = places[order[first]], number[np.asarray(mesh.tri_verts, dtype=np.intp)]
     distinct = (corners != np.roll(corners, 1, axis=1)).all(axis=1)
     return places.astype(float), corners[distinct]
 

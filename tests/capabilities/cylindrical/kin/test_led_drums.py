@@ -259,6 +259,7 @@ def test_a_sound_drum_is_accepted(name):
     assert verdict.play.unit == unit
 
 
+@pytest.mark.thin(2)
 @pytest.mark.costly("whole verdicts of drums")
 @pytest.mark.parametrize("name", DRUMS)
 def test_a_limit_is_kept(name):
@@ -350,7 +351,7 @@ def test_a_line_that_is_too_high_turns_an_arm():
 def surface(drum, name, phi, radius):
     """Height of a flank by positions alone: the lowest underside, or the highest top, of all rollers there."""
     _, side, roller, level = next(own for own in drum.flanks if own[0] == name)
-    theta = phi + np.linspace(-0.6, 0.6, 24_001)
+    theta = phi + np.linspace(-0.6, 0.6, 2_401)
     x, y = radius * np.cos(phi - theta), radius * np.sin(phi - theta)
     y0, z0 = drum.axis(theta, level)
     with np.errstate(invalid="ignore"):

@@ -61,6 +61,18 @@ def sound():
 
 
 @pytest.fixture(scope="module")
+def wide():
+    """A sound screw in wider triangles: a chord stands 30 (1 - cos 1 deg) = 0.0046 out."""
+    return cut(SCREW, 180, 3, 8)
+
+
+@pytest.fixture(scope="module")
+def of_wide(wide):
+    """The verdict on it."""
+    return judged(wide, SCREW)
+
+
+@pytest.fixture(scope="module")
 def spiral():
     return cut(SPIRAL)
 
@@ -91,6 +103,7 @@ def test_a_sound_screw_is_accepted_with_what_was_measured(name, request):
     assert 0.001 < worst < 0.0025
 
 
+@pytest.mark.thin(2)
 @pytest.mark.parametrize("columns", [60, 90])
 def test_a_tall_screw_in_wide_triangles_is_accepted(columns):
     """Its ends lie far below turns at the other one, farther than a step of Newton's method is good for."""
@@ -103,13 +116,14 @@ def test_a_tall_screw_in_wide_triangles_is_accepted(columns):
     assert max(flank.measured_error for flank in verdict.flanks) > 0.5 * off.max()
 
 
-def test_the_motion_is_that_of_points_of_the_file_in_every_turn(sound):
-    verdict = judged(sound, SCREW)
+def test_the_motion_is_that_of_points_of_the_file_in_every_turn(wide, of_wide):
+    verdict = of_wide
+    assert verdict.ok, [check for check in verdict.checks if not check.ok]
     chance = np.random.default_rng(2)
-    points = walls_of(SCREW, sound, chance, 60_000)
-    theta = chance.uniform(0.0, 6.0 * TURN, 60)
+    points = walls_of(SCREW, wide, chance, 60_000)
+    theta = chance.uniform(0.0, 6.0 * TURN, 30)
     degrees = np.degrees(theta)
-    found = positions(read(*sound), SCREW.intent(), theta)
+    found = positions(read(*wide), SCREW.intent(), theta)
     for flank, own, height in zip(verdict.flanks, SCREW.flanks, found, strict=True):
         side = own[1]
         free = np.zeros(len(theta), dtype=bool)
@@ -158,17 +172,21 @@ def test_the_longest_gap_is_that_of_two_helices():
         assert max(gap.length for gap in lower) == pytest.approx(5.0 * (1.0 + slope**2) / slope, rel=2e-4)
 
 
-def test_a_roller_drops_into_a_crossing_and_so_does_a_shoe_that_is_too_short(sound):
-    alone = judged(sound, replace(SCREW, shoe=None))
+def test_a_roller_drops_into_a_crossing_and_so_does_a_shoe_that_is_too_short(wide, of_wide):
+    alone = judged(wide, replace(SCREW, shoe=None))
     assert refused(alone) == {("crossings", "")}
     assert "the roller drops into the groove" in check_of(alone, "crossings").detail
-    for shoe, ok in ((47.0, False), (48.5, True)):
-        verdict = judged(sound, replace(SCREW, shoe=shoe))
-        assert verdict.ok == ok
+    for shoe, verdict in ((47.0, judged(wide, replace(SCREW, shoe=47.0))), (60.0, of_wide)):
+        assert verdict.ok == (shoe == 60.0)
         crossings = check_of(verdict, "crossings")
         # the file may be off by the tolerance
         assert crossings.value == pytest.approx(47.654 + 2.0 * TOLERANCE / 0.2098, abs=0.02)
         assert crossings.limit == shoe
+
+
+@pytest.mark.slow
+def test_a_shoe_that_just_bridges_its_crossings_is_accepted(wide):
+    assert judged(wide, replace(SCREW, shoe=48.5)).ok
 
 
 # --- planted faults ---------------------------------------------------------------------------------------------------
@@ -331,11 +349,12 @@ def test_a_shoe_in_a_bend(stroke, length):
         assert bent > 0.5 * found  # along the shoe the bend grows less sharp
 
 
-def test_a_shoe_that_does_not_pass_a_bend_is_refused(spiral):
-    verdict = judged(spiral, replace(SPIRAL, shoe=40.0))
+def test_a_shoe_that_does_not_pass_a_bend_is_refused():
+    verdict = judged(cut(SPIRAL, 180, 3, 8), replace(SPIRAL, shoe=40.0))
     assert refused(verdict) == {("shoe", "")}
 
 
+@pytest.mark.slow  # two solids; every verdict on a screw has its volume
 def test_the_volume_of_a_crossing_groove_is_that_of_ever_finer_meshes():
     drum = SPIRAL.intent()
     exact, remainder = volume_within(drum, gauges_of(drum))
@@ -414,7 +433,7 @@ def test_patches_of_a_flank_stand_in_the_way_of_other_turns_where_it_goes_on():
     while depth(patches(SPIRAL, flank, [first]))[0] < 0.02:
         first += 1
     low, high = 0.0, 1.0
-    for _ in range(40):
+    for _ in range(20):
         middle = 0.5 * (low + high)
         low, high = (low, middle) if depth(patches(SPIRAL, flank, [first], [middle]))[0] > 0.02 else (middle, high)
     more = patches(SPIRAL, flank, [*clear, first], [*np.ones(len(clear)), high])
