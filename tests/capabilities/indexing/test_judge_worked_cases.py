@@ -131,6 +131,8 @@ def test_an_edge_from_one_half_of_a_roller_to_the_other_is_held_against_both(cle
         y = places[:, 1] * math.cos(angle) - places[:, 0] * math.sin(angle)
         for k in range(turret.stops):
             psi = float(turret.psi(np.array([angle]))[0]) + k * TURN / turret.stops
+            if math.cos(psi) < 0.0:  # behind the turret's axis, or more than a radius beyond an end of the cam
+                continue
             right, up = offset - y - pitch * math.cos(psi), places[:, 2] - pitch * math.sin(psi)
             above = up * math.cos(psi) - right * math.sin(psi) > 0.0
             square = right**2 + up**2 - np.where(above, turret.roller + clearance, turret.roller) ** 2
