@@ -406,8 +406,11 @@ class Globoid:
         """Angle by Newton's method along the circle of the layer, from a place straight above the roller."""
         radius, side = reach
         wide = self.radius + depth
+        found = np.full_like(psi, np.nan)
+        given = np.isfinite(psi)
+        one, other = (np.broadcast_to(row, found.shape)[given] for row in (np.sin(ahead), np.cos(ahead)))
+        psi = psi[given]
         height = psi + side * np.arcsin(radius / wide)
-        one, other = np.sin(ahead), np.cos(ahead)
         sine, cosine = np.sin(psi), np.cos(psi)
         for _ in range(STEPS):
             up, out = wide * np.sin(height), wide * np.cos(height)
@@ -416,7 +419,9 @@ class Globoid:
             with np.errstate(divide="ignore", invalid="ignore"):
                 height = height - np.clip((y * y + x * x - radius**2) / rate, -0.1, 0.1)
         off = np.abs(y * y + x * x - radius**2)
-        return np.asarray(np.where((off < NEAR * radius) & (np.abs(y) < radius) & (side * -x > 0.0), height, np.nan))
+        met = (off < NEAR * radius) & (np.abs(y) < radius) & (side * -x > 0.0)
+        found[given] = np.where(met, height, np.nan)
+        return found
 
     def faces(self, depth: Array, ends: tuple[float, float]) -> tuple[Array, Array]:
         """Angles at which the circle of a layer meets them."""

@@ -144,17 +144,18 @@ def by_error(rollers: Rollers, side: Side, layer: float | None = None) -> float:
     first, last = (place + form.inwards * max(-form.depth_at(place), 0.0) for place in (intent.inner, intent.outer))
     theta = np.arange(ANGLES) * np.float64(TURN / ANGLES)
     psi, slope = rollers.turning.at(theta)
+    own = (psi + np.arange(-intent.stops, intent.stops + 1)[:, None] * intent.pitch).ravel()
+    facing = np.abs(own) < 0.5 * math.pi
+    own, slope = own[facing], np.tile(slope, 2 * intent.stops + 1)[facing]
     worst = 0.0
-    for k in range(-intent.stops, intent.stops + 1):
-        own = psi + k * intent.pitch
-        for share in np.linspace(0.0, 1.0, 5):
-            rho = np.full(ANGLES, first + share * (last - first))
-            cost, depth, height = form.costs(rho, (own, slope), side * radius)
-            if layer is not None:
-                for _ in range(MEETINGS):
-                    rho = np.maximum(rho + form.inwards * (layer - depth), NEAR)
-                    cost, depth, height = form.costs(rho, (own, slope), side * radius)
-            there = (np.abs(own) < 0.5 * math.pi) & (height >= intent.ends[0]) & (height <= intent.ends[1])
-            there &= (depth >= -NEAR) & (depth <= form.depth + NEAR)
-            worst = max(worst, float(cost[there].max(initial=0.0)))
+    for share in np.linspace(0.0, 1.0, 5):
+        rho = np.full(len(own), first + share * (last - first))
+        cost, depth, height = form.costs(rho, (own, slope), side * radius)
+        if layer is not None:
+            for _ in range(MEETINGS):
+                rho = np.maximum(rho + form.inwards * (layer - depth), NEAR)
+                cost, depth, height = form.costs(rho, (own, slope), side * radius)
+        there = (height >= intent.ends[0]) & (height <= intent.ends[1])
+        there &= (depth >= -NEAR) & (depth <= form.depth + NEAR)
+        worst = max(worst, float(cost[there].max(initial=0.0)))
     return worst * (1.0 + SLACK)

@@ -7,6 +7,7 @@ camgeo.capabilities.indexing.section, camgeo.capabilities.indexing.tables.
 
 from __future__ import annotations
 
+import functools
 import math
 from typing import TYPE_CHECKING
 
@@ -39,6 +40,7 @@ DRIVEN = changed(
 OVER = {BARREL: 150.0, GLOBOID: 120.0}
 
 
+@functools.cache
 def known(design: IndexDesign) -> dict[str, tuple[float, float | None]]:
     return {figure.name: (figure.value, figure.at) for figure in figures_of(design)}
 
@@ -176,7 +178,7 @@ def test_loads_follow_from_virtual_work() -> None:
     """T = (load + J psi'' Omega^2) psi', the torque on the turret its first factor; velocities those of a cycloid."""
     found = known(shared_design(DRIVEN))
     rate = math.tau
-    theta = np.radians(np.linspace(0.0, 150.0, 30001))
+    theta = np.radians(np.linspace(0.0, 150.0, 3001))
     rows = np.array([cycloid(angle, 6, 150.0) for angle in theta.tolist()]).T
     turret = 20.0 + 0.05 * rows[2] * rate**2
     assert found["velocity"][0] == pytest.approx(2.0 * 60.0 / 150.0 * 360.0)

@@ -50,6 +50,7 @@ def judged(parts, radius, name, turret=BARREL, limits=LIMITS):
     return flank, {check.name: check for check in checks}
 
 
+@pytest.mark.thin(2)
 @pytest.mark.parametrize("turret", [BARREL, LEADING, changed(BARREL, clearance=0.04)])
 @pytest.mark.parametrize("name", ["lower", "upper"])
 def test_a_line_is_right_at_its_radius_alone(turret, name):
@@ -68,6 +69,7 @@ def test_a_line_of_the_other_flank():
     assert not checks["contour"].ok
 
 
+@pytest.mark.thin(2)
 @pytest.mark.parametrize("name", ["lower", "upper"])
 @pytest.mark.parametrize("by", [0.02, -0.02])
 def test_a_bump_and_a_dent(name, by):

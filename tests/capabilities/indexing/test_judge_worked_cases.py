@@ -59,7 +59,7 @@ def test_what_a_larger_roller_touches_is_so_far_in_the_metal(turret, more):
 def test_the_least_of_many_angles_is_found(turret):
     """Points anywhere in the blank, against all angles of a fine grid on the turret's side."""
     rng = np.random.default_rng(20)
-    count = 300
+    count = 200
     low, high = turret.intent.ends
     z, phi = rng.uniform(low, high, count), rng.uniform(0.0, TURN, count)
     depths = rng.uniform(0.0, 13.0, count)
@@ -69,7 +69,7 @@ def test_the_least_of_many_angles_is_found(turret):
     worst = rollers.worst(points)
     least = np.full(count, np.inf)
     pitch = TURN / turret.stops
-    for theta in np.arange(0.0, TURN, TURN / 7200):
+    for theta in np.arange(0.0, TURN, TURN / 3600):
         x, y = (r * f(phi - theta) for f in (np.cos, np.sin))
         psi = turret.psi(np.array([theta]))[0]
         for k in range(turret.stops):
@@ -123,19 +123,21 @@ def test_an_edge_from_one_half_of_a_roller_to_the_other_is_held_against_both(cle
     start, last = start[within], last[within]
     rollers = Rollers(turret.intent, 1e-3)
     found = rollers.edges(start, last, (rollers.worst(start), rollers.worst(last))).excess
-    places = (start[:, None] + np.linspace(0.0, 1.0, 41)[:, None] * (last - start)[:, None]).reshape(-1, 3)
+    places = (start[:, None] + np.linspace(0.0, 1.0, 21)[:, None] * (last - start)[:, None]).reshape(-1, 3)
     least = np.full(len(places), np.inf)
     offset, pitch = turret.form.offset, turret.form.pitch
-    for angle in np.arange(0.0, TURN, TURN / 3600):
+    for angle in np.arange(0.0, TURN, TURN / 1800):
         x = places[:, 0] * math.cos(angle) + places[:, 1] * math.sin(angle)
         y = places[:, 1] * math.cos(angle) - places[:, 0] * math.sin(angle)
         for k in range(turret.stops):
             psi = float(turret.psi(np.array([angle]))[0]) + k * TURN / turret.stops
+            if math.cos(psi) < 0.0:  # behind the turret's axis, or more than a radius beyond an end of the cam
+                continue
             right, up = offset - y - pitch * math.cos(psi), places[:, 2] - pitch * math.sin(psi)
             above = up * math.cos(psi) - right * math.sin(psi) > 0.0
             square = right**2 + up**2 - np.where(above, turret.roller + clearance, turret.roller) ** 2
             least = np.minimum(least, np.where(x > 0.0, square, np.inf))
-    np.testing.assert_allclose(found, least.reshape(-1, 41).min(axis=1), atol=0.05)
+    np.testing.assert_allclose(found, least.reshape(-1, 21).min(axis=1), atol=0.05)
 
 
 def test_the_turret_goes_one_place_on_in_a_turn():

@@ -271,6 +271,7 @@ def test_a_roller_that_hardly_reaches_in_is_told_where_to_bear() -> None:
     assert failing("from: 37.5, to: 50") == []
 
 
+@pytest.mark.thin(2)
 @pytest.mark.costly("a search for a size, and a cam of it")
 @pytest.mark.parametrize(
     ("key", "words"),

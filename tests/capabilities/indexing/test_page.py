@@ -51,11 +51,12 @@ export: {tolerance: 0.0004, files: [stl]}
 TURRETS = [
     (BARREL, 150.0, 6, 1.0, 1.0),
     (CCW + BARREL, 150.0, 6, 1.0, -1.0),
-    (LEADING, 150.0, 6, -1.0, 1.0),
     (CCW + LEADING, 150.0, 6, -1.0, -1.0),
+    (LEADING, 150.0, 6, -1.0, 1.0),
 ]
 
 
+@pytest.mark.thin(2)
 @pytest.mark.parametrize(("text", "over", "stops", "side", "sense"), TURRETS)
 def test_rollers_of_a_barrel_are_where_the_dial_takes_them(
     text: str, over: float, stops: int, side: float, sense: float
@@ -142,7 +143,7 @@ def test_metal_is_seen_where_no_roller_has_been(text: str, over: float, layer_at
         shown = [seen_point(design, layer_at, psi, z, theta) for psi, z in places]
         points = np.concatenate([point for _, point in shown])
         # rollers do not reach through the cam's axis to its far side
-        every = window(design.recipe.stops)
+        every = window(design.recipe.stops)[::4]  # half a degree
         here = points[:, :1] * np.cos(every) + points[:, 1:2] * np.sin(every) > 0.0
         away = np.where(here, rollers.away(points, every), np.inf).min(axis=1) - size
         assert (away > 0.3).sum() > 40
@@ -272,9 +273,10 @@ def written(text: str, tmp_path: Path) -> Path:
     return file.path
 
 
-@pytest.mark.costly("solids of three cams")
+@pytest.mark.thin(3)
+@pytest.mark.costly("the solid of a cam")
 @pytest.mark.parametrize(
-    ("text", "side", "sense"), [(BARREL, 1.0, 1.0), (CCW + BARREL, 1.0, -1.0), (LEADING, -1.0, 1.0)]
+    ("text", "side", "sense"), [(CCW + BARREL, 1.0, -1.0), (BARREL, 1.0, 1.0), (LEADING, -1.0, 1.0)]
 )
 def test_rollers_of_a_barrel_turn_beside_it_in_a_viewer(text: str, side: float, sense: float, tmp_path: Path) -> None:
     """Their axes are parallel to x, from 37.5 to 50 mm; y is offset - side l cos psi, and -y of a mirrored cam."""
