@@ -100,7 +100,7 @@ def test_a_check_of_a_plate_that_fails_leads_to_its_line_and_its_place() -> None
 
 
 # needs: cylindrical
-@pytest.mark.costly("a drum on six cylinders, and its charts")
+@pytest.mark.slow
 def test_a_drum_is_shown_over_a_turn_with_its_charts() -> None:
     answer = live.design("drum", TEXTS["drum-groove"])
     scene = answer["scene"]

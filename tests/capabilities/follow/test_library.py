@@ -552,9 +552,7 @@ def test_a_recipe_has_the_name_of_one(name: str, capsys) -> None:
         (["--table", "new.html", "--page", "new.html"], "new.html {} --table and by --page: give"),
     ],
 )
-def test_a_file_is_not_written_twice(
-    eccentric: Path, tmp_path: Path, capsys, files: list[str], message: str
-) -> None:
+def test_a_file_is_not_written_twice(eccentric: Path, tmp_path: Path, capsys, files: list[str], message: str) -> None:
     """The table of lifts beside a recipe has the recipe's name: a table of that name would be lost."""
     drawing = str(eccentric)
     files = [name if name.startswith("--") else f"{tmp_path}/{name}" for name in files]
