@@ -8,7 +8,6 @@ from __future__ import annotations
 import json
 import math
 import re
-from collections import Counter
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -101,7 +100,7 @@ def test_a_check_of_a_plate_that_fails_leads_to_its_line_and_its_place() -> None
 
 
 # needs: cylindrical
-@pytest.mark.costly("a drum on six cylinders, and its charts")
+@pytest.mark.slow
 def test_a_drum_is_shown_over_a_turn_with_its_charts() -> None:
     answer = live.design("drum", TEXTS["drum-groove"])
     scene = answer["scene"]
@@ -114,16 +113,17 @@ def test_a_drum_is_shown_over_a_turn_with_its_charts() -> None:
     assert {key for key in picture if picture[key] != scene[key]} == set()
 
 
-@pytest.mark.thin(3)
+@pytest.mark.thin(6)
 @pytest.mark.costly("solids of several turns among them")
 @pytest.mark.parametrize("name", [name for name in TEXTS if not name.endswith("-shortened")])  # it takes its time
 def test_the_solid_of_a_kind_is_closed(name: str) -> None:
     (file,) = live.solid(name, TEXTS[name])["files"]
     corners = np.fromfile(file["path"], "<f4").reshape(-1, 3, 3)
-    edges = Counter(
-        (tuple(triangle[i]), tuple(triangle[(i + 1) % 3])) for triangle in corners.tolist() for i in range(3)
-    )
-    assert all(count == edges[end, start] for (start, end), count in edges.items())
+    _, number = np.unique(corners.reshape(-1, 3), axis=0, return_inverse=True)
+    triangles = number.reshape(-1, 3)
+    edges = np.stack([triangles, np.roll(triangles, -1, axis=1)], axis=-1).reshape(-1, 2)
+    ahead, back = (edges[np.lexsort(edges[:, way].T)] for way in ([1, 0], [0, 1]))
+    np.testing.assert_array_equal(ahead, back[:, ::-1])  # each edge is run as often one way as the other
     low, high = corners.min(axis=(0, 1)), corners.max(axis=(0, 1))
     deep = {}
     deep |= {"plate-endless": 8.0, "plate-feed": 12.0, "plate-groove": 16.0}  # needs: linear
@@ -207,7 +207,7 @@ def test_a_travel_runs_backwards_is_split_and_may_end_higher() -> None:
 
 
 @pytest.mark.costly("figures of a drum in two units, and of a wrong one")
-@pytest.mark.thin(6)
+@pytest.mark.thin(13)
 @pytest.mark.parametrize("name", [name for name, text in TEXTS.items() if "crank" not in text])  # it holds to 1e-9
 def test_a_kind_in_another_unit_stays_the_same_cam(name: str) -> None:
     text = TEXTS[name]
@@ -231,15 +231,20 @@ def test_a_kind_in_another_unit_stays_the_same_cam(name: str) -> None:
 
 
 # needs: cylindrical
-@pytest.mark.costly("a drum under an arm, with its charts")
-def test_a_swing_over_a_drum_is_drawn_in_degrees() -> None:
+@pytest.mark.slow
+def test_a_swing_over_a_drum_has_its_plot_in_degrees() -> None:
     answer = live.design("arm", TEXTS["drum-arm"])
     assert answer["scene"]["plots"][0]["unit"] == "°"
-    (rise, *_) = (one["change"] for one in answer["motion"]["segments"] if one["kind"] == "rise")
+
+
+# needs: cylindrical
+def test_a_swing_over_a_drum_is_drawn_in_degrees() -> None:
+    (rise, *_) = (change for kind, _, change in segments(TEXTS["drum-arm"]) if kind == "rise")
     assert rise == pytest.approx(20.0, abs=1e-6)
 
 
 # needs: indexing
+@pytest.mark.thin(2)
 @pytest.mark.costly("cams with their turrets, and checks of them")
 @pytest.mark.parametrize("name", ["index-barrel", "index-globoid"])
 def test_a_turret_is_shown_over_a_turn(name: str) -> None:

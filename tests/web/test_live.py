@@ -214,7 +214,7 @@ FOLLOWER: dict[str, Any] = {
 
 
 # needs: follow
-@pytest.mark.thin(3)
+@pytest.mark.thin(6)
 @pytest.mark.costly("laws are fitted to what is followed")
 @pytest.mark.parametrize(
     ("name", "follower", "words"),
@@ -274,7 +274,7 @@ def test_a_file_that_is_not_judged_has_the_curves_of_its_motion_and_says_why(tmp
 
 
 # needs: follow
-@pytest.mark.costly("laws are fitted to what is followed")
+@pytest.mark.slow
 def test_a_roller_goes_by_its_diameter_and_a_polygon_has_the_reading_that_it_allows() -> None:
     design = camgeo.design(camgeo.load(TEXTS["disc-roller"]))
     polygon(Path(live.FOLDER) / "points.dxf", design.contour(120))

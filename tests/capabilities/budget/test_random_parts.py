@@ -323,7 +323,7 @@ def test_what_no_file_can_show_is_said(made: Callable[[str], list[Path]], tmp_pa
         read_contours(recipe, design_of("disc-kerf"), [drawing])
 
 
-@pytest.mark.thin(3)
+@pytest.mark.slow
 @pytest.mark.parametrize("name", ["disc-trim", "trimmed-roller", "trimmed-frame"])
 def test_parts_of_a_trimmed_contour_begin_with_the_motion_that_is_lost(name: str, tmp_path: Path) -> None:
     recipe, design = of_recipe(name), design_of(name)

@@ -129,7 +129,7 @@ def test_a_plate_of_inches_is_one(tmp_path: Path) -> None:
 @pytest.mark.parametrize(
     ("text", "volume"),
     [
-        (changed(FURNISHED, ("[dxf]", "[stl, ply, 3mf]")), 5.0),
+        (changed(FURNISHED, ("[dxf]", "[stl, ply, 3mf], tolerance: 0.02")), 5.0),
         (changed(GROOVE, ("[dxf]", "[stl, ply, 3mf]")), 5.0),
         (changed(ENDLESS + "export: {files: [stl]}\n", ("over: 40}", "over: 40}\n")), None),
     ],
@@ -252,6 +252,7 @@ def test_a_plate_that_reverses_while_its_follower_moves_is_remarked(tmp_path: Pa
     ]
 
 
+@pytest.mark.thin(2)
 @pytest.mark.parametrize(
     "text",
     [
@@ -272,7 +273,7 @@ def test_checks_are_foreseen(text: str, tmp_path: Path) -> None:
 
 
 def test_the_same_input_gives_the_same_bytes(tmp_path: Path) -> None:
-    names = "[dxf, stl, csv]"
+    names = "[dxf, stl, csv], tolerance: 0.02"
     first, second = (exported(tmp_path / name, changed(PLATE, ("[dxf]", names))) for name in made(tmp_path))
     for one, other in zip(first.files, second.files, strict=True):
         assert one.path.read_bytes() == other.path.read_bytes()

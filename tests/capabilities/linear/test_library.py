@@ -82,6 +82,7 @@ def test_it_shows_itself(tmp_path: Path) -> None:
     assert "pressure-angle" in plate._repr_html_()
 
 
+@pytest.mark.thin(2)
 @pytest.mark.parametrize(
     ("limit", "remedy"),
     [
@@ -102,7 +103,7 @@ def test_a_limit_that_is_missed_has_a_remedy(tmp_path: Path, limit: str, remedy:
 
 @pytest.mark.costly("four files, each judged")
 def test_every_mesh_and_a_program_of_a_groove(tmp_path: Path) -> None:
-    text = changed(GROOVE, ("files: [dxf]", "files: [ply, 3mf, glb, gcode]"))
+    text = changed(GROOVE, ("files: [dxf]", "files: [ply, 3mf, glb, gcode], tolerance: 0.02"))
     text += "manufacture: {cutter: 12, feed: 400, plunge: 99, spindle: 4e3, depth_of_cut: 3, safe_height: 5}\n"
     (tmp_path / "plate.yaml").write_text(text, encoding="utf-8")
     report = camgeo.export(tmp_path / "plate.yaml", tmp_path / "out")

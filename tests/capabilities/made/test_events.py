@@ -69,6 +69,7 @@ def test_durations_are_those_of_brute_force(lift, planted):
     assert abs(np.diff([*crossings["made"]]) - np.diff([*crossings["intended"]])) > (0.04 if lift == 5.0 else -1.0)
 
 
+@pytest.mark.slow
 def test_lift_and_velocity_are_those_of_brute_force(tmp_path):
     recipe, files = measured(tmp_path, LOBE, flank(0.03, 180.0, 20.0))
     told = events(recipe, *files)["follower"]

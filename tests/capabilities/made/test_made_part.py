@@ -9,6 +9,7 @@ from __future__ import annotations
 
 import json
 import math
+import re
 
 import numpy as np
 import pytest
@@ -138,7 +139,7 @@ def test_lifts_of_an_indicator(tmp_path):
     """Its zero is free; a roller of another radius is told by --probe-radius."""
     recipe, _ = measured(tmp_path, limited(ROLLER, profile=1.0, motion=1.0))
     ((_, _, surface),) = surfaces(ROLLER)
-    shaft = np.radians(np.arange(0.0, 360.0, 0.5))
+    shaft = np.radians(np.arange(0.0, 360.0, 1.0))
     fault = 0.02 * np.exp(-0.5 * ((shaft - np.radians(50.0)) / np.radians(6.0)) ** 2)
     file = tmp_path / "lift.csv"
 
@@ -217,10 +218,9 @@ def test_points_that_are_not_of_this_cam_are_told_what_they_look_like(wrong, tmp
     ((_, part, surface),) = surfaces(ROLLER)
     alter, words = BAD[wrong]
     file.write_text(table(alter(points(part, surface)), "x,y"))
-    with pytest.raises(camgeo.CallError, match=words):
-        camgeo.verify(recipe, file)
     assert main(["verify", str(recipe), str(file)]) == 2
-    assert len(capsys.readouterr().err.splitlines()) == 1
+    (told,) = capsys.readouterr().err.splitlines()
+    assert re.search(words, told)
 
 
 @pytest.mark.slow
@@ -307,10 +307,10 @@ def test_lifts_of_an_indicator_with_a_flat_face(tmp_path):
     recipe = tmp_path / "part.yaml"
     recipe.write_text(text, "utf-8")
     ((_, _, surface),) = surfaces(text)
-    t = np.linspace(0.0, 2.0 * np.pi, 14_401)[:-1]
+    t = np.linspace(0.0, 2.0 * np.pi, 7_201)[:-1]
     frame = surface.gauge.envelope.frames(t)
     metal = frame.points + (0.01 * np.sin(3.0 * t))[:, None] * frame.normals
-    angle = np.arange(720) * np.pi / 360.0
+    angle = np.arange(360) * np.pi / 180.0
     lift = np.array([(metal @ [np.cos(a), np.sin(a)]).max() for a in angle])
     rows = "\n".join(f"{math.degrees(a):.4f},{s:.7f}" for a, s in zip(angle, lift, strict=True))
     (tmp_path / "lift.csv").write_text(f"angle_deg,lift_mm\n{rows}\n", "utf-8")
@@ -400,6 +400,7 @@ def test_a_few_strays_are_judged_and_named(lines, datum, tmp_path):
         assert not disc["causes"]
 
 
+@pytest.mark.thin(2)
 @pytest.mark.parametrize("align", ["rotation", "best-fit"])
 def test_a_stray_turns_no_part(align, tmp_path):
     recipe, (file,) = measured(tmp_path, ROLLER)

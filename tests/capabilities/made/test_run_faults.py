@@ -82,6 +82,7 @@ def test_a_machine_with_accidents_is_corrected_to_its_noise_in_three_runs(tmp_pa
     assert min(taken[1:]) > 0.007
 
 
+@pytest.mark.slow
 def test_a_fault_that_two_runs_share_is_the_machines(tmp_path):
     scratch = bump(0.012, 130.0)
     left, total = runs(tmp_path, machine() + scratch, [0.0 * T] * 4)

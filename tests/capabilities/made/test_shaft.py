@@ -148,7 +148,7 @@ def lift_table(recipe, file, late=0.0, *, alone=(0.0, 0.0, 0.0), step=1.0, facto
 def test_lifts_from_any_zero_are_told_and_judged_as_one(late, alone, tmp_path, capsys):
     """One zero for all tables: the shaft is turned as one, and a lobe that stands off the others is told as that."""
     recipe = camshaft(tmp_path, limits=LIMITS)
-    file = lift_table(recipe, tmp_path / "lift.csv", late, alone=alone)
+    file = lift_table(recipe, tmp_path / "lift.csv", late, alone=alone, step=2.0)
     assert main(["verify", str(recipe), str(file)]) == 2
     assert f"the shaft looks turned by {late:.3g} degrees: `--align rotation`" in capsys.readouterr().err
     made = camgeo.verify(recipe, file, align="rotation", probe_error=0.001)["made"]
@@ -217,15 +217,15 @@ def test_lobes_by_a_column(label, tmp_path):
 
 def test_a_file_for_each_lobe_and_lobes_that_are_missing_are_said(tmp_path, capsys):
     recipe = camshaft(tmp_path)
-    rows = shaft_points(recipe, noise=0.001)
+    rows = shaft_points(recipe, noise=0.001, count=120)
     files = [
         written(tmp_path / f"{name}.csv", [row for row in rows if row[0] == name], "z_mm,x_mm,y_mm")
         for name in ("arm", "flat")
     ]
-    assert main(["verify", str(recipe), *map(str, files)]) == 0
+    assert main(["verify", str(recipe), *map(str, files), "--spans", "24"]) == 0
     out = capsys.readouterr().out
     assert "  remark: no points of roller: not judged" in out.splitlines()
-    made = camgeo.verify(recipe, *files)["made"]
+    made = camgeo.verify(recipe, *files, spans=24)["made"]
     assert [(lobe["name"], lobe["files"]) for lobe in made["lobes"]] == [("flat", ["flat.csv"]), ("arm", ["arm.csv"])]
     assert (made["datum"], made["missing"]) == ("flat", ["roller"])
 

@@ -113,6 +113,7 @@ def test_what_tells_no_lean(tmp_path):
     assert camgeo.verify(recipe, file, align="rotation").ok
 
 
+@pytest.mark.slow
 def test_the_lean_scatters_as_its_uncertainty_says():
     """Cams of different certainty, one of them far off the line of the others."""
     rng, ratios = np.random.default_rng(3), []

@@ -241,7 +241,7 @@ def test_play_is_told_and_halved_between_both_sides(tmp_path, capsys):
     assert "the contacts have +0.02 mm more play than the recipe says, from +0.02 to +0.02" in capsys.readouterr().out
 
 
-@pytest.mark.costly("points of a whole part, with a start from them")
+@pytest.mark.slow
 def test_the_breadth_of_a_yoke_is_that_of_its_points(tmp_path, capsys):
     """A cam 0.03 mm too large all round has a larger base circle; a bump on one side shows in the breadth."""
     text = TWO_CONTACTS["yoke"]

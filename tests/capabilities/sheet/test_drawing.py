@@ -28,6 +28,7 @@ from camgeo.cli.main import main
 from camgeo.recipe.recipe import load_text
 
 if TYPE_CHECKING:
+    from collections.abc import Iterator
     from pathlib import Path
 
 
@@ -68,7 +69,7 @@ SIZES = [
 
 
 @pytest.fixture
-def drawn(monkeypatch: pytest.MonkeyPatch) -> list[drawing.Pages]:
+def drawn() -> Iterator[list[drawing.Pages]]:
     """The pages of every drawing that is made in a test."""
     found: list[drawing.Pages] = []
     lay_out = drawing._pages
@@ -77,8 +78,9 @@ def drawn(monkeypatch: pytest.MonkeyPatch) -> list[drawing.Pages]:
         found.append(lay_out(*arguments, **options))
         return found[-1]
 
-    monkeypatch.setattr(drawing, "_pages", kept)
-    return found
+    with pytest.MonkeyPatch.context() as patch:  # designs stay shared: what is patched makes none
+        patch.setattr(drawing, "_pages", kept)
+        yield found
 
 
 def exported(text: str, folder: Path, *, ok: bool = True) -> Path:
@@ -102,7 +104,7 @@ def with_sheet(text: str, options: str) -> str:
 
 
 @pytest.mark.costly("a sheet of each kind of cam")
-@pytest.mark.thin(45)
+@pytest.mark.thin(90)
 @pytest.mark.parametrize(
     ("path", "paper"),
     [pytest.param(path, f"A{3 + number % 2}", id=path.stem) for number, path in enumerate(SHIPPED)],
@@ -152,7 +154,7 @@ def test_a_planted_line_through_a_text_is_seen(drawn: list[drawing.Pages], tmp_p
         demand_clear(drawn[0])
 
 
-@pytest.mark.thin(5)
+@pytest.mark.slow
 @pytest.mark.parametrize(
     "name",
     [
@@ -426,6 +428,7 @@ def test_a_budget_states_the_tolerance(drawn: list[drawing.Pages], tmp_path: Pat
 
 
 # needs: made
+@pytest.mark.slow
 def test_a_made_part_states_the_tolerance(drawn: list[drawing.Pages], tmp_path: Path) -> None:
     exported(f"{CAM.replace('{sheet: {profile: 0.04}}', 'sheet')}made: {{profile: 0.05}}\n", tmp_path)
     assert "0.05" in [text.text for text in drawn[0].annotated[0].texts]

@@ -172,7 +172,7 @@ UNDERCUT = {
 }
 
 
-@pytest.mark.thin(2)
+@pytest.mark.slow
 @pytest.mark.parametrize("name", UNDERCUT)
 def test_the_motion_lost_is_what_the_follower_sinks_below_its_lift(name):
     follower, stroke = UNDERCUT[name]

@@ -215,7 +215,7 @@ def test_an_undercut_flank_is_judged_against_what_is_given():
 def polygon_of_trimmed(follower):
     """Plate through the envelope of all rollers, without the parts that its corners leave out."""
     ends = Ends((OVERRUN, OVERRUN))
-    u = np.linspace(0.0, 120.0, 2001)
+    u = np.linspace(0.0, 120.0, 1001)
     parts = cuts(follower, beyond=ends.overrun)
     kept = np.all([(u < cut.begin) | (u > cut.end) for cut in parts], axis=0)
     top = np.concatenate([top_of(follower, u)[1:-1][kept], [cut.corner for cut in parts]])

@@ -46,6 +46,7 @@ def test_half_a_turn_of_a_frame(kind):
     assert motion.alike(4) == (1, 3)
 
 
+@pytest.mark.slow
 def test_a_section_of_the_turn_of_two_rollers_on_an_arm():
     """All six sections tell of the first; a form of one wave a turn keeps from their symmetry, and goes out."""
     text, still = recipe(ROLLERS), recipe(ROLLERS.replace(f"law: {SWING}", "delta: {cos: {1: 0.001}}"))
