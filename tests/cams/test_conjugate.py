@@ -180,6 +180,7 @@ def test_a_stem_with_its_offset_given_is_sized_by_both_discs() -> None:
     within(pair(follower, f"distance: {least}", size=size), 30, 30)
 
 
+@pytest.mark.slow
 @pytest.mark.thin(2)
 @pytest.mark.parametrize("side", ["trailing", "leading"])
 def test_a_bell_crank_is_sized_by_both_discs(side: str) -> None:
@@ -227,6 +228,7 @@ def test_figures_are_of_the_worst_disc() -> None:
     assert found["pressure-angle-rise"].value == pytest.approx(-math.degrees(math.atan(low.value)), abs=1e-9)
 
 
+@pytest.mark.slow
 def test_remarks_say_which_size_would_keep_the_rules() -> None:
     cam = recipe(STEM, "distance: 85, radius: 8")
     told = {remark.name: remark.sentence for remark in remarks_of(cam, designed(cam))}
@@ -273,6 +275,7 @@ def test_undercut_under_two_faces_and_what_frees_it() -> None:
     assert both.contours
 
 
+@pytest.mark.slow
 def test_limits_of_disc_2_name_what_helps() -> None:
     limit = "limits: {radius-of-curvature: {at_least: 12}, pressure-angle: {at_most: 30}}\n"
     cam = recipe(STEM, "distance: 85, radius: 8", more=limit)

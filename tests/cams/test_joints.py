@@ -56,6 +56,7 @@ def test_joints_are_told_in_inches():
     assert "in/rad^2 at 90 degrees" in remark["sentence"]
 
 
+@pytest.mark.thin(2)
 @pytest.mark.parametrize(
     ("motion", "order"),
     [
@@ -71,6 +72,7 @@ def test_what_jumps_first_is_told(motion, order):
     assert ("acceleration-jump" in {one["name"] for one in found["remarks"]}) == (order == 2)
 
 
+@pytest.mark.thin(2)
 @pytest.mark.parametrize(
     "motion",
     [
@@ -174,6 +176,7 @@ def of_swing(segments, order):
     return [(one["at_deg"], one["before"], one["after"]) for one in found["joints"] if one["derivative"] == order]
 
 
+@pytest.mark.slow
 def test_the_joints_of_a_frames_swing_stand_at_the_shafts_angles():
     """At 140 degrees, where the rise ends, and at 0, where the law follows its own image."""
     a = 20 / 2 * (180 / 140) ** 2

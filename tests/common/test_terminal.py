@@ -63,6 +63,7 @@ def test_a_full_standard_error_changes_no_status(call: list[str]) -> None:
         assert run(*call, capture_output=False, stderr=full).returncode == 2
 
 
+@pytest.mark.slow
 @pytest.mark.thin(12)
 @FULL
 @pytest.mark.parametrize("buffered", [True, False])

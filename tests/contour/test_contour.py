@@ -459,7 +459,7 @@ def rose(size: float = 1.0) -> Contour:
     return Contour.from_pieces(turning(beziers))
 
 
-@pytest.mark.thin(3)
+@pytest.mark.thin(6)
 @pytest.mark.parametrize("made", [rose, lambda: ellipse().contour], ids=["spline", "ellipse"])
 @pytest.mark.parametrize("tolerance", [1e-2, 1e-4, 1e-6, 1e-8])
 def test_arcs_along_a_spline_keep_their_promise(made: Callable[[], Contour], tolerance: float) -> None:
@@ -484,6 +484,7 @@ def test_arcs_along_curves_with_inflections_cusps_and_vanishing_derivatives(cont
     assert off.max() <= 1e-7
 
 
+@pytest.mark.slow
 @pytest.mark.thin(2)
 @pytest.mark.parametrize("size", [2e-5, 2e4])
 def test_arcs_along_a_spline_are_as_close_on_a_cam_of_a_micrometre(size: float) -> None:

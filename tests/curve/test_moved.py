@@ -52,7 +52,7 @@ def test_the_spline_is_the_wave():
     assert (high[0] >= off).all()
 
 
-@pytest.mark.thin(4)
+@pytest.mark.thin(12)
 @pytest.mark.parametrize("kind", list(RECIPES))
 def test_frames_are_those_of_the_moved_points(kind):
     for contour, curve in moved(kind, spline()):

@@ -191,6 +191,7 @@ def test_holes_that_meet_each_other_or_the_rim_have_no_region(other):
         region(SQUARE, [square, square + other])
 
 
+@pytest.mark.slow
 def test_openings_in_line_leave_no_flat_triangle():
     """Sides of all squares of a grid lie on its lines, and so do 73 of the ears clipped between them."""
     square = np.array([[0, 0], [1, 0], [1, 1], [0, 1]], dtype=float)

@@ -273,7 +273,7 @@ def needle(share: float, t: float) -> tuple[mp.mpf, mp.mpf, mp.mpf]:
     return a2 * c / r, b2 * s / r, a2 * b2 / r**3
 
 
-@pytest.mark.thin(2)
+@pytest.mark.thin(4)
 @pytest.mark.parametrize("thin", [2.0**-10, 2.0**-20, 2.0**-30, 2.0**-40])
 def test_a_flat_pair_that_is_almost_a_needle(thin: float) -> None:
     """The ellipse's radii of curvature, l thin to l/sqrt(thin): each within the rounding of the size, or its own."""

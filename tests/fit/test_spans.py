@@ -49,6 +49,7 @@ def distances(curve: Curve, control: np.ndarray, low: float, high: float) -> np.
     return np.sum((points - at.point) * at.normal, axis=1)
 
 
+@pytest.mark.thin(3)
 @pytest.mark.parametrize("name", few(CURVES, 2))
 @settings(max_examples=examples(12), deadline=None)
 @given(

@@ -275,6 +275,7 @@ def test_a_pivot_inside_the_disc_and_an_arm_stretched_out(side):
     proved(on_arm(M07, stretched, 3.0), fitted(Parallel(CentreShape(M07, stretched), 3.0), 1e-5), 1e-5)
 
 
+@pytest.mark.slow
 @pytest.mark.thin(2)
 @pytest.mark.parametrize("gap", [1e-3, 1e-9])
 def test_a_roller_a_hair_above_undercut(gap):
@@ -295,6 +296,7 @@ def proved(follower, made, tolerance):
     assert deviation(made, follower.envelope).worst[0] <= tolerance
 
 
+@pytest.mark.slow
 @pytest.mark.thin(4)
 @pytest.mark.parametrize("width", [1.0, 0.1, 0.01])
 def test_a_rise_of_a_hundredth_of_a_degree_is_measured_as_any_other(width):

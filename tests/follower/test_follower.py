@@ -228,6 +228,7 @@ PAIRS = {
 }  # fmt: skip
 
 
+@pytest.mark.slow
 @pytest.mark.thin(9)
 @pytest.mark.parametrize("name", PAIRS)
 @pytest.mark.parametrize("count", [9, 100, 2000])
@@ -267,6 +268,7 @@ def test_errors_of_a_pair_are_settled_where_the_curvature_jumps(count, out):
     assert error.max() <= judged.motion.max + 1e-11
 
 
+@pytest.mark.slow
 def test_an_ellipse_works_a_right_angled_pair():
     """Semi-axes a, b with a^2 + b^2 = (2 l)^2: its orthoptic circle is the pivot's; r^2 = 2 (l^2 + m^2 cos 2t)."""
     transmission = PAIRS["ellipse"]
@@ -284,6 +286,7 @@ def test_a_contour_that_reaches_the_pivot_is_refused():
         followers.flat_pair(PAIRS["three"]).judge(polygon(130.0 * circle_points(12)), PHI)
 
 
+@pytest.mark.slow
 def test_dwell_of_a_pair():
     pair = followers.flat_pair(PAIRS["given law"])
     contour = through(pair.envelope, 3000)

@@ -129,6 +129,7 @@ OTHERS = {
 } | {name: FOLLOWERS[name] for name in ROUND}
 
 
+@pytest.mark.slow
 @pytest.mark.thin(3)
 @pytest.mark.parametrize("name", few(OTHERS, 6))
 def test_splines_and_the_arcs_in_their_place_agree(name: str, monkeypatch: pytest.MonkeyPatch) -> None:

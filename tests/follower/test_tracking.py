@@ -88,6 +88,7 @@ GUIDES: dict[str, tuple[Any, float, float]] = {
 }
 
 
+@pytest.mark.slow
 @pytest.mark.thin(8)
 @pytest.mark.parametrize("count", few([60, 140]))
 @pytest.mark.parametrize("name", GUIDES)

@@ -95,7 +95,7 @@ def test_a_double_roller_that_is_steep_but_bounded_is_held_as_before(tmp_path: P
     assert set(failing(report(tmp_path, ROLLERS.format(delta=1799, more=", motion_error: 1")))) == {"motion"}
 
 
-@pytest.mark.thin(2)
+@pytest.mark.thin(4)
 @pytest.mark.parametrize(
     ("share", "fails", "remarked"),
     [(1.01 * MOST_SHARE, True, False), (0.99 * MOST_SHARE, False, True), (0.99 * LOOSE, False, False)],

@@ -106,6 +106,7 @@ def test_a_sound_file_passes_every_check(tmp_path, cam, form):
 # --- drawings ---------------------------------------------------------------------------------------------------------
 
 
+@pytest.mark.slow
 @pytest.mark.thin(6)
 @pytest.mark.parametrize("depth", [0.02, -0.02])
 @pytest.mark.parametrize("k", [0, EDGES - 1])
@@ -119,6 +120,7 @@ def test_a_vertex_moved(tmp_path, cam, depth, k):
     assert ("motion" in found) == (depth > 0)
 
 
+@pytest.mark.slow
 @pytest.mark.thin(3)
 def test_a_vertex_moved_along_the_contour_until_it_turns_back(tmp_path, cam):
     intent, points = cam
@@ -159,6 +161,7 @@ def test_a_reversed_segment(tmp_path, cam):
     assert "turns back on itself" in contour.detail
 
 
+@pytest.mark.slow
 @pytest.mark.thin(3)
 def test_a_stretch_drawn_backwards(tmp_path, cam):
     intent, points = cam
@@ -194,6 +197,7 @@ def test_a_turn(tmp_path, cam, degrees):
     assert {"contour", "motion"} <= failures(write_dxf(tmp_path / "cam.dxf", turned(points(EDGES), degrees)), intent)
 
 
+@pytest.mark.slow
 @pytest.mark.thin(6)
 @pytest.mark.parametrize("shift", [(0.01, 0.0), (0.0, -0.01)])
 def test_a_shift(tmp_path, cam, shift):
@@ -221,6 +225,7 @@ def test_no_units(tmp_path, cam):
     assert failures(write_dxf(tmp_path / "cam.dxf", points(EDGES), units=0), intent) == {"units"}
 
 
+@pytest.mark.slow
 @pytest.mark.thin(3)
 def test_inches_meant_and_inches_drawn(tmp_path, cam):
     intent, points = cam
@@ -383,6 +388,7 @@ def test_metal_left_in_a_hollow_is_felt_and_seen(tmp_path):
     assert verdict.measured_error == pytest.approx(0.005, rel=0.01)
 
 
+@pytest.mark.slow
 def test_two_contours_each_within_the_tolerance_can_jam_a_yoke(tmp_path):
     """All corners outside by 0.9 e: within the tolerance, and the breadth 1.8 e too large; a play limit of e tells."""
     intent, _ = CAMS["yoke"]
@@ -393,6 +399,7 @@ def test_two_contours_each_within_the_tolerance_can_jam_a_yoke(tmp_path):
     assert failures(narrow, intent, Limits(1e-3, play=1e-3)) == {"constant-breadth"}
 
 
+@pytest.mark.slow
 @pytest.mark.thin(3)
 def test_a_motion_limit_of_the_callers_own(tmp_path, cam):
     intent, points = cam
@@ -468,6 +475,7 @@ def test_a_solid_too_thick(tmp_path, cam):
     assert failures(stl(tmp_path, points(EDGES), high=8.01), intent) == {"thickness"}
 
 
+@pytest.mark.slow
 @pytest.mark.thin(3)
 def test_a_solid_in_inches(tmp_path, cam):
     intent, points = cam

@@ -206,6 +206,7 @@ def test_a_fault(tmp_path, fault, form):
     assert caught <= failures(written(tmp_path, form, points()))
 
 
+@pytest.mark.slow
 @pytest.mark.thin(6)
 @pytest.mark.parametrize("form", few(FORMS, 3))
 @pytest.mark.parametrize("k", range(0, EDGES, 200))

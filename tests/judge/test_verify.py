@@ -77,6 +77,7 @@ def test_a_cubic_spline_in_a_yoke(tmp_path, count, expected):
     assert verdict.motion.max == pytest.approx(seen, rel=1e-3, abs=3e-9)
 
 
+@pytest.mark.slow
 def test_a_cubic_spline_under_rollers(tmp_path):
     def hollow(t):
         return ROLLERS.envelope.points(t)
@@ -99,6 +100,7 @@ def test_a_spoilt_control_point_of_a_spline(tmp_path):
     assert not named(verdict)["contour"].ok
 
 
+@pytest.mark.slow
 def test_an_ellipse_entity_works_a_right_angled_pair_exactly(tmp_path):
     """W section 5: lambda = 2, D = m^2 cos 2t. The ELLIPSE is exact, so is the motion."""
     a, b = np.sqrt(2 * (60.0**2 + 900.0)), np.sqrt(2 * (60.0**2 - 900.0))

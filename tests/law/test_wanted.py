@@ -135,6 +135,7 @@ def test_a_figure_too_small_is_not_proved():
         proved_error(replace(found, error=found.error / 4), wanted)
 
 
+@pytest.mark.slow
 def test_a_law_with_corners():
     """Constant velocity: refused of a cam that should follow it exactly, and followed by a series."""
     rise = Segment("rise", math.radians(22.5), math.radians(3), law("constant-velocity"))

@@ -89,6 +89,7 @@ def posed(rng, assembly, frame_of):
             return ("four", assembly, (float(r1), float(r3), float(r4)), W, motion(rng, x, y, r3))
 
 
+@pytest.mark.slow
 @pytest.mark.thin(6)
 @pytest.mark.parametrize("assembly", ASSEMBLIES)
 @pytest.mark.parametrize("beside", [0.0, 1e-15, -1e-12, 1e-8])

@@ -53,6 +53,7 @@ def region(path, per_piece=30):
     return shapely.Polygon(drawing.contour.sample(per_piece), holes)
 
 
+@pytest.mark.slow
 @pytest.mark.thin(2)
 @pytest.mark.parametrize(
     ("cam", "part", "top"),

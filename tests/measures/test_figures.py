@@ -390,6 +390,7 @@ def test_the_size_that_would_do_does(text: str, rising: float, falling: float) -
     assert max(up - rising, down - falling) > -0.1  # and no larger than it must be
 
 
+@pytest.mark.slow
 def test_a_return_that_a_spring_drives_may_be_steeper() -> None:
     back = "[{rise: 20, over: 150, law: cycloidal}, {dwell: 60}, {return: 20, over: 60, law: cycloidal}, {dwell: 90}]"
     text = disc("kind: roller, radius: 9", back)

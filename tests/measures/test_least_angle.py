@@ -100,6 +100,7 @@ def test_the_angle_of_a_harmonic_return_is_that_of_its_formula() -> None:
     assert angle + dwell == pytest.approx(120, abs=1e-9)
 
 
+@pytest.mark.slow
 def test_the_recipe_with_the_numbers_in_makes_the_same_file() -> None:
     recipe = camgeo.load(STEM)
     sized: Any = camgeo.design(recipe).sized

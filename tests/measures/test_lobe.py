@@ -98,6 +98,7 @@ def test_lobe_centre_is_no_peak() -> None:
     assert made["duration"].value == pytest.approx(2.0 * 150.0 * (1.0 - share), abs=1e-8)
 
 
+@pytest.mark.slow
 def test_one_figure_at_two_lifts() -> None:
     """Each entry of a list is a limit of its own, at its own lift, and a remedy names the one that fails."""
     lifts = "duration: [{at_lift: 1.27, at_least: 190}, {at_lift: 1.52, at_least: 194, at_most: 200}, {at_most: 300}]"

@@ -68,6 +68,7 @@ def names(text: str) -> list[str]:
     return [remark.name for remark in remarks(text)]
 
 
+@pytest.mark.slow
 def test_a_large_second_roller_of_a_sized_pair_is_told_the_radius_that_keeps_the_rule() -> None:
     (remark,) = (remark for remark in remarks(SIZED_PAIR % 1.1) if remark.name == "large-roller")
     keeping = re.search(r"which a conjugate\.radius below (\S+) in keeps$", remark.sentence)
@@ -81,7 +82,7 @@ def test_a_sound_recipe_has_none(text: str) -> None:
     assert names(text) == []
 
 
-@pytest.mark.thin(3)
+@pytest.mark.thin(7)
 @pytest.mark.parametrize(
     ("text", "found"),
     [

@@ -61,6 +61,7 @@ def test_a_drawing_becomes_the_motion_that_it_was_made_of(follower, more, files,
     assert made.kept.remarks == ()
 
 
+@pytest.mark.slow
 def test_another_follower_on_the_same_contour_moves_otherwise(tmp_path):
     exported(tmp_path, "roller")
     given = "{contour: out/cam/cam.dxf, reading: 0.003}"
@@ -122,6 +123,7 @@ def test_points_round_a_contour_become_the_motion_that_they_were_made_of(followe
     assert made.kept.distance <= 0.02 * size
 
 
+@pytest.mark.slow
 @pytest.mark.thin(3)
 @pytest.mark.parametrize("follower", ["roller", "offset", "arm"])
 def test_points_of_a_pitch_curve_give_the_motion_of_the_centre_that_runs_on_it(follower, tmp_path):

@@ -141,6 +141,7 @@ def test_a_file_that_does_not_fit_is_told_in_the_words_of_the_system(tmp_path: P
     assert not (tmp_path / "out" / "cam").exists()
 
 
+@pytest.mark.slow
 @pytest.mark.skipif(sys.platform != "linux", reason="the killed function reaches the workers by fork")
 def test_a_killed_process_is_told_for_each_recipe(
     tmp_path: Path, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch

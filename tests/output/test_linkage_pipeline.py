@@ -266,6 +266,7 @@ def test_what_cannot_be_is_refused(old: str, new: str, words: str, tmp_path: Pat
     assert not list(tmp_path.iterdir())
 
 
+@pytest.mark.slow
 def test_swings_that_are_lost_in_rounding_or_do_not_join() -> None:
     text = FOUR_BAR.replace("support", "constant-breadth").replace("dwell: {band: 0.1, at_least: 36}\n", "")
     text = text.replace(
@@ -281,6 +282,7 @@ def test_swings_that_are_lost_in_rounding_or_do_not_join() -> None:
         designed(recipe(text=text % torn))
 
 
+@pytest.mark.slow
 def test_what_would_bring_the_shaft_within_the_cam_does() -> None:
     by_law = FOUR_BAR.replace("support", "constant-breadth").replace("dwell: {band: 0.1, at_least: 36}\n", "")
     by_law = by_law.replace(

@@ -55,7 +55,7 @@ def test_there_are_recipes() -> None:
     assert len(RECIPES) >= 17
 
 
-@pytest.mark.thin(18)
+@pytest.mark.thin(36)
 @pytest.mark.parametrize("path", few(RECIPES, 3, first=1), ids=lambda path: path.stem)
 def test_every_shipped_recipe_exports_and_passes(path: Path, tmp_path: Path) -> None:
     recipe = load(path)
@@ -130,6 +130,7 @@ def test_the_proof_leaves_less_than_a_fine_tolerance_permits() -> None:
     assert motion["remainder"] <= 0.1 * math.degrees(1e-10 / 60.0)
 
 
+@pytest.mark.slow
 @pytest.mark.thin(2)
 @pytest.mark.parametrize(
     ("arc", "tolerance"),
@@ -142,6 +143,7 @@ def test_a_pair_whose_breaks_are_off_by_rounding_is_judged(arc: str, tolerance: 
     assert outcome.ok, [check for check in outcome.report["checks"] if not check["ok"]]
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("name", few(["as-figure-2a", "w-booth", "reuleaux-nine"], 3))
 def test_the_same_recipe_gives_the_same_bytes(name: str, tmp_path: Path) -> None:
     recipe = load(RECIPES[0].with_name(f"{name}.yaml"))
@@ -273,6 +275,7 @@ OF_DXF = "camgeo.fit.arcs camgeo.output.drawing ezdxf kin.read.drawing.dxf"
 OF_STL = "camgeo.fit.polygon camgeo.output.solid kin.judge.volume kin.read.mesh.stl"
 
 
+@pytest.mark.slow
 @pytest.mark.thin(2)
 @pytest.mark.parametrize(("kind", "own", "other"), [("stl", OF_STL, OF_DXF), ("dxf", OF_DXF, OF_STL)])
 def test_a_command_imports_its_scene_alone(kind: str, own: str, other: str, tmp_path: Path) -> None:

@@ -130,7 +130,7 @@ def test_what_is_drawn_is_the_same_to_the_last_digits(kind: str, request: pytest
     assert inches.contour.area == pytest.approx(millimetres.contour.area, rel=1e-13)
 
 
-@pytest.mark.thin(2)
+@pytest.mark.thin(4)
 @pytest.mark.parametrize(
     "kind",
     [
@@ -204,6 +204,7 @@ def test_another_reader_of_meshes(made: Made) -> None:
     assert sizes[0] == pytest.approx(sizes[1], abs=TOLERANCE)
 
 
+@pytest.mark.slow
 @kernel
 def test_another_reader_of_steps(stepped: Made) -> None:
     from OCP.BRepGProp import BRepGProp

@@ -55,6 +55,7 @@ def test_what_packs_to_next_to_nothing(tmp_path):
         read_solid(path)
 
 
+@pytest.mark.slow
 def test_an_object_is_put_together_once(tmp_path, monkeypatch):
     path = in_3mf(tmp_path / "part.3mf", ring())
     import zipfile

@@ -203,7 +203,7 @@ def test_limits_hold_and_fail_at_the_figure_itself(text: str, sign: float, sense
         assert not report_of(text, said)["ok"] if not ok else report_of(text, said)["ok"] or not alone
 
 
-@pytest.mark.thin(8)
+@pytest.mark.thin(16)
 @pytest.mark.parametrize("text", sorted(set(HAVE.values())))
 def test_limits_are_foreseen(text: str) -> None:
     recipe = loaded(text, wide(text))
@@ -887,6 +887,7 @@ def test_a_sweep_limits_and_ranks_by_the_pressure_angle() -> None:
 
 
 # needs: sweep
+@pytest.mark.slow
 def test_a_sweep_has_the_figures_of_its_limits() -> None:
     recipe = loaded(ROLLER + SWEEP)
     own = {name: value_of(name)[0] for name in figure_names(recipe) if HAVE.get(name) == ROLLER}
@@ -940,6 +941,7 @@ def test_any_cam_s_figures_are_those_of_its_motion(cos: list[int], sin: list[int
         ]
 
 
+@pytest.mark.slow
 def test_the_backlash_of_a_groove_without_a_flank(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     """It could not be judged; nothing is said of flat faces."""
     recipe = tmp_path / "groove.yaml"

@@ -247,6 +247,7 @@ def test_the_remark_says_what_bounds_the_size() -> None:
     )
 
 
+@pytest.mark.slow
 def test_an_offset_that_only_rounding_left_is_0() -> None:
     """A rise and a return alike are best on a stem without an offset."""
     law = "over: 60, law: cycloidal"

@@ -87,6 +87,7 @@ def test_contacts_of_every_kind(name: str, tmp_path: Path) -> None:
         assert np.abs(between / (0.5 * (low + high)) - 1.0)[smooth].max() < 0.05
 
 
+@pytest.mark.slow
 def test_pressure_angles_are_those_of_the_limits(tmp_path: Path) -> None:
     from camgeo.measures.figures import design_figures
 

@@ -155,6 +155,7 @@ D02 = {
 }  # fmt: skip
 
 
+@pytest.mark.slow
 @pytest.mark.thin(3)
 @pytest.mark.parametrize("eccentricity", D02)
 def test_d02_roller_offset(eccentricity):
@@ -248,6 +249,7 @@ D07 = {
 }  # fmt: skip
 
 
+@pytest.mark.slow
 @pytest.mark.thin(2)
 @pytest.mark.parametrize("side", D07)
 def test_d07_arm(side):

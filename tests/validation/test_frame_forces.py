@@ -532,6 +532,7 @@ def test_pressure_at_the_faces():
     assert state.pressure[3, 0] == pytest.approx(math.sqrt(222.464669181 * modulus / (math.pi * 8 * rho)), rel=1e-9)
 
 
+@pytest.mark.slow
 def test_a_slide_counts_in_newtons(tmp_path):
     """f09 at shaft angle 0, as its file has it."""
     text = SLIDER + f"dynamics: {{{F09}}}\nexport: {{files: [{{csv: {{as: forces}}}}]}}\nverify: {{angles: 360}}\n"
@@ -567,6 +568,7 @@ def test_faces_under_preload():
     )
 
 
+@pytest.mark.slow
 def test_faces_of_unequal_stiffness():
     """N = P + V k1/(k1 + k2) on face 1, P - H k1/(k1 + k2) on face 2; a lost face bears nothing, the other all."""
     state = running(UNEVEN, F06.replace("load: 12", "load: 30")).at(np.linspace(0.0, 6.2, 60))

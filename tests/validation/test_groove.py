@@ -102,6 +102,7 @@ def test_the_play_is_reported_and_limited(tmp_path):
     assert {check["name"] for check in tight.report["checks"] if not check["ok"]} == {"limit:backlash"}
 
 
+@pytest.mark.slow
 @pytest.mark.thin(12)
 @pytest.mark.parametrize("clearance", [1.0, 0.03, 1e-6, 0.0])
 @pytest.mark.parametrize("held", ["stem", "trailing", "leading"])

@@ -190,6 +190,7 @@ def test_the_second_disc_jams_first():
     assert jam["limit"] < math.degrees(guide.jam())
 
 
+@pytest.mark.slow
 def test_a_flat_face_needs_more_than_without_friction():
     free = {"base": 90.0, "follower": "kind: flat", "motion": DOUBLE, "mass": 1.2, "rpm": 300, "held": "preload: 400"}
     rubbing, slippery = (extremes_of(running(text(**free, friction=mu))) for mu in (0.3, 1e-12))

@@ -58,7 +58,7 @@ def test_equation_18_with_its_plus_sign_is_the_open_assembly(name):
     assert np.abs(np.exp(1j * off) - 1).max() < 1e-12
 
 
-@pytest.mark.thin(4)
+@pytest.mark.thin(12)
 @pytest.mark.parametrize("name", FOUR_BARS)
 def test_equation_20_is_right_while_the_rocker_stays_short_of_90_degrees(name):
     s, s1, figure, (three, _, _), (four, _, _) = four_bar_parts(name)
@@ -82,7 +82,7 @@ def test_equation_20_loses_the_branch_beyond_90_degrees():
     assert four == pytest.approx(reference.output[0], abs=1e-10)
 
 
-@pytest.mark.thin(2)
+@pytest.mark.thin(4)
 @pytest.mark.parametrize("name", FOUR_BARS)
 def test_equation_21_holds_for_our_rates(name):
     s, s1, figure, (three, w3, _), (four, w4, _) = four_bar_parts(name)
@@ -106,7 +106,7 @@ def test_equation_34_of_appendix_1(name):
     assert apart(top[clear] / bottom[clear], w4[clear]) < 1e-9
 
 
-@pytest.mark.thin(4)
+@pytest.mark.thin(12)
 @pytest.mark.parametrize("name", FOUR_BARS)
 def test_equation_34_vanishes_over_itself_where_theta_3_is_theta_4_and_ours_does_not(name):
     figure, scene = FIGURES[name], Scene.of(name)

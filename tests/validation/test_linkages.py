@@ -208,6 +208,7 @@ def test_two_rests_of_the_oscillating_yoke_are_true_ones(workshop):
     assert all(60 <= one["length_deg"] <= 70 for one in told)
 
 
+@pytest.mark.slow
 def test_the_dyads_rocker_rests_with_the_first():
     """Six-bar: the triangle of P, the elbow Q and the pivot G, written out, on the rocker of the reference."""
     loop = FIGURES["as-figure-9-2a"].loop(FINE)

@@ -342,6 +342,7 @@ def test_a_limit_of_its_force():
         recipe_of("yoke", 0.0, more="limits: {preload-force-least: {at_least: 541}}")
 
 
+@pytest.mark.slow
 @pytest.mark.thin(2)
 @pytest.mark.parametrize("interference", [1e-6, 5.0])
 def test_extremes(interference, tmp_path):

@@ -214,6 +214,7 @@ def test_the_discs_of_the_case():
         assert left[1] == pytest.approx(0.0, abs=1e-4)
 
 
+@pytest.mark.slow
 @pytest.mark.thin(4)
 @pytest.mark.parametrize("name", SHAPES)
 def test_the_check_on_jamming(name):

@@ -313,6 +313,7 @@ def test_section_6_chord_polygon_closes_from_any_start(pitch):
     assert curve.gaps().max() <= 4 * curve.steps * e
 
 
+@pytest.mark.slow
 def test_chords_of_another_length_do_not_close(figure_8):
     curve = Pitch.of(figure_8)
     longer = Pitch(curve.t, curve.r * (1 - 1e-3), curve.alpha, curve.arm, curve.steps)

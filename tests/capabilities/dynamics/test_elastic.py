@@ -141,6 +141,7 @@ def test_beyond_the_speed_at_which_float_begins_the_check_fails() -> None:
     assert run["impacts"]["free_deg"] > 0.0
 
 
+@pytest.mark.slow
 def test_play_makes_impacts() -> None:
     outcome = pipeline.check(recipe(FOLLOWED.replace("preload: 150", "backlash: 0.02")))
     assert outcome.ok
@@ -290,6 +291,7 @@ def test_swings_without_number_are_refused_with_the_damping_that_helps() -> None
     assert all(run["steady"]["least_force"] is not None for run in runs)
 
 
+@pytest.mark.slow
 def test_a_linkage_is_driven_as_intended() -> None:
     four_bar = """\
 name: linkage
@@ -358,6 +360,7 @@ HIGH = "rounding does not tell it from a whole multiple"
 LOW = "nothing holds the follower to the cam"
 
 
+@pytest.mark.slow
 @pytest.mark.thin(6)
 @pytest.mark.parametrize(
     ("train", "message", "change"),

@@ -86,6 +86,7 @@ def test_a_table_and_the_formula_of_the_same_load(tmp_path: Path) -> None:
     assert running(table).mean_force(0) == pytest.approx(running(formula).mean_force(0), rel=1e-9)
 
 
+@pytest.mark.slow
 def test_no_row_is_passed_over(tmp_path: Path) -> None:
     """A measured load of 3600 rows, one of them far above its neighbours, of a train that has no mass to speak of."""
     values = 50.0 + np.random.default_rng(7).normal(0.0, 5.0, 3600)

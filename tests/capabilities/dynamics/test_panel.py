@@ -62,6 +62,7 @@ def named(document: dict[str, Any], name: str) -> dict[str, Any]:
     return found
 
 
+@pytest.mark.slow
 def test_checks_have_pounds_beside_si() -> None:
     inches, mm = report(INCHES), report(metric(INCHES))
     for name, per, unit in (

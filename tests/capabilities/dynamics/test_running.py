@@ -195,6 +195,7 @@ def test_the_width_is_the_least_of_the_metal(part: str, width: str, track: str, 
     assert over == pytest.approx(pressure_of(wide)[0] / math.sqrt(value), rel=1e-9)
 
 
+@pytest.mark.slow
 def test_the_land_of_the_case() -> None:
     report = check(read(disc("thickness: 10, bore: 20, chamfer: 2").encode(), Path("case.yaml"))).report
     (limit,) = (one for one in report["checks"] if one["name"] == "limit:contact-pressure")
@@ -281,6 +282,7 @@ def test_pressures_carry_their_units(stated: str, mega: float) -> None:
         read(text.replace(f"at_most: {stated}", "at_most: 3 lbf").encode(), Path("cam.yaml"))
 
 
+@pytest.mark.thin(3)
 @pytest.mark.parametrize(
     ("load", "preload", "rate", "rpm"),
     [

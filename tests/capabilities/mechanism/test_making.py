@@ -107,7 +107,7 @@ def made(name: str) -> tuple[Recipe, Design, Assembly]:
     return build(SHAPES[name] + (HUBS + PART.partition("\n")[2] if name.endswith("hubs") else PART))
 
 
-@pytest.mark.thin(3)
+@pytest.mark.thin(12)
 @pytest.mark.parametrize("name", few(SHAPES, 3))
 def test_every_body_is_one_closed_piece_with_the_volume_of_its_plates(name: str) -> None:
     import shapely
@@ -176,7 +176,7 @@ def test_nothing_meets_at_any_angle(name: str) -> None:
     assert checks[0].value == 0.2
 
 
-@pytest.mark.thin(12)
+@pytest.mark.thin(36)
 @pytest.mark.parametrize("name", SHAPES)
 def test_rates_are_those_of_the_places(name: str) -> None:
     phi, h = np.array([0.4, 2.0, 4.4]), 1e-5
@@ -196,7 +196,7 @@ def carried(assembly: Assembly, name: str, point: tuple[float, float]) -> np.nda
     return np.column_stack([x + point[0] * c - point[1] * s, y + point[0] * s + point[1] * c])
 
 
-@pytest.mark.thin(10)
+@pytest.mark.thin(20)
 @pytest.mark.parametrize(
     ("name", "one", "point", "other", "there"),
     [
@@ -367,6 +367,7 @@ def turns_in(drive: ArcSpline, bore: ArcSpline, play: float) -> bool:
     )
 
 
+@pytest.mark.thin(3)
 @pytest.mark.parametrize(
     ("bore", "held"),
     [
@@ -460,6 +461,7 @@ def test_a_pivot_that_stands_through_the_cam_is_caught() -> None:
     assert check.value < -3.9
 
 
+@pytest.mark.slow
 def test_too_small_an_axial_gap_is_caught() -> None:
     assembly = only(made("yoke")[2], "yoke", "cap-right")
     assert all(check.ok for check in collision_checks(assembly))
@@ -549,7 +551,7 @@ def test_what_finds_no_room_is_refused_at_its_field(name: str, old: str, new: st
     assert caught.value.field == field
 
 
-@pytest.mark.thin(6)
+@pytest.mark.thin(12)
 @pytest.mark.parametrize(
     ("name", "old", "new", "field", "part", "remedy", "mended"),
     [

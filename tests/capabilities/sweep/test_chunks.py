@@ -182,6 +182,7 @@ def test_the_key_changes_with_all_that_decides_the_outcome(monkeypatch: pytest.M
     assert job().key != key
 
 
+@pytest.mark.slow
 def test_what_does_not_bear_on_the_figures_leaves_the_key() -> None:
     def key(recipe: SweepTask) -> str:
         return SweepJob(recipe.plan, recipe.scene(recipe.figures), hills).key

@@ -73,6 +73,7 @@ def test_verbose_tells_counts_and_designs(tmp_path: Path, capsys: pytest.Capture
     assert f"  best-1.yaml: cam.shaft[0] 15.8333, linkage.rocker 95\n    {FIRST}\n" in said
 
 
+@pytest.mark.slow
 @pytest.mark.thin(2)
 @pytest.mark.usefixtures("no_pictures")
 @pytest.mark.parametrize(("margin", "status"), [(1.0, 3), (99.0, 1)])

@@ -121,6 +121,7 @@ def test_a_polished_zero_has_no_sign():
     assert repr(float(refine._rounded(goal, np.array([-1e-9]))[0])) == "0.0"
 
 
+@pytest.mark.slow
 def test_designs_made_one_by_one(monkeypatch):
     monkeypatch.setattr(refine, "_MEMBERS", 6)
     monkeypatch.setattr(refine, "_ANGLES", 90)

@@ -119,6 +119,7 @@ def test_estimates_anywhere_are_near_the_exact_designs(name, law, shares):
         assert_near(estimates, exact)
 
 
+@pytest.mark.slow
 def test_why_a_design_has_no_estimate():
     text, ranges = CAMS["roller"]
     one = recipe(text, ranges)
@@ -132,6 +133,7 @@ def test_why_a_design_has_no_estimate():
     assert [REASONS[code] for code in outside.reason] == ["shaft-outside"]
 
 
+@pytest.mark.slow
 def test_what_acts_otherwise_is_worked_out_anew():
     """The angle of a point moves a spline, and a number of waves makes another cam: neither acts linearly."""
     cam = "kind: disc, base_radius: 40, follower: {kind: roller, radius: 8}, motion: {points: "
@@ -363,6 +365,7 @@ def test_the_next_design_follows_where_one_falls(swept):
     assert not set(best[:2]) & set(indices)
 
 
+@pytest.mark.slow
 @pytest.mark.usefixtures("no_pictures")
 def test_where_all_fall_none_is_kept_and_the_nearest_is_exact(swept):
     hard = SEARCH.replace("at_most: 35", "at_most: 4")

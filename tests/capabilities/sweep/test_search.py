@@ -117,6 +117,7 @@ def test_a_sweep_that_finds_nothing_leaves_the_last_files_alone(tmp_path: Path) 
     assert outcome.work.computed == 0  # other limits, the same figures
 
 
+@pytest.mark.slow
 @pytest.mark.usefixtures("no_pictures")
 def test_a_run_that_finds_all_as_it_was_makes_no_file_again(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
     monkeypatch.setattr(searches, "COMPUTING", PROCEDURES)

@@ -44,7 +44,7 @@ def sampled(f, x):
     return Samples(f[0], *cell_bounds(*f), np.stack([x[0], np.broadcast_to(angles(f[0].shape[1]), x[0].shape)]))
 
 
-@pytest.mark.thin(2)
+@pytest.mark.thin(5)
 @pytest.mark.parametrize("n", [24, 60, 360])
 @pytest.mark.parametrize("band", [1e-9, 0.003, 0.2, 2.0, 50.0])
 def test_the_windows_are_those_of_two_pointers(n, band):
@@ -165,6 +165,7 @@ def test_lengths_are_those_of_kin(band):
         assert np.abs(relative - wanted).max() < tolerance
 
 
+@pytest.mark.slow
 def test_the_error_falls_with_the_fourth_power_of_the_step():
     m = 40
     coarse, fine, finest = (lengths_of(waves(8, m, n), 0.02)[0] for n in (180, 360, 1440))

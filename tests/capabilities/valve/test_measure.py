@@ -55,6 +55,7 @@ def test_durations_are_those_of_the_tappet_at_the_lift_less_the_lash() -> None:
     assert measured(LOBE + VALVE, "valve-lift: {at_least: 1}") == pytest.approx([12.5], abs=1e-12)
 
 
+@pytest.mark.slow
 def test_velocity_and_acceleration_while_it_is_open() -> None:
     degrees = np.linspace(0.0, 229.032572283 / 4, 400_001)
     rows = 1.6 * lift(degrees)

@@ -137,6 +137,7 @@ def test_where_newtons_method_has_not_come_to_is_no_neck(monkeypatch, steps):
     assert neck.half == pytest.approx(LENGTH * math.sqrt(0.38), rel=2e-9)
 
 
+@pytest.mark.slow
 @pytest.mark.thin(2)
 @pytest.mark.parametrize("share", few([0.98, 0.999, 1.0 - 1e-6], 2))
 def test_a_waist_almost_folded_is_measured(share):

@@ -57,6 +57,7 @@ def lost_motion(shape, at, count=20_000):
     return p[count:] - (corners @ frame.normal[count:].T).max(axis=0)
 
 
+@pytest.mark.thin(2)
 @pytest.mark.parametrize(
     "curve",
     [
@@ -147,6 +148,7 @@ def not_passed_over(curve):
         return "cannot be separated" in str(error)
 
 
+@pytest.mark.slow
 def test_eight_swallowtails_below_rounding_are_told_apart():
     """Their extent is below what points can tell; speed times tangent over each of them still does."""
     k, mean = 8, 16.414588076454564

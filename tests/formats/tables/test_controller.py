@@ -76,7 +76,7 @@ def joined(head: list[str], columns: dict[str, Any]) -> Any:
 RATES = (("velocity", "SlaveVelo"), ("acceleration", "SlaveAcc"))
 
 
-@pytest.mark.thin(12)
+@pytest.mark.thin(2)
 @pytest.mark.parametrize("cam", CAMS)
 @pytest.mark.parametrize("controller", [name for name in CONTROLLERS if name != "sew"])
 def test_a_drive_is_within_what_its_table_says(cam: str, controller: str, tmp_path: Path) -> None:
@@ -350,6 +350,7 @@ def test_a_table_of_six_degrees_has_its_position_and_loses_its_acceleration(tmp_
     assert f"its acceleration within {check.value:.3g}"[:28] in " ".join(head)
 
 
+@pytest.mark.thin(3)
 @pytest.mark.parametrize("controller", ["twincat", "twincat-table", "rockwell"])
 def test_rows_at_joints_are_fewer_and_at_every_joint(controller: str, tmp_path: Path) -> None:
     even, _, plain = one(tmp_path, f"for: {controller}", "0.002")
@@ -384,6 +385,7 @@ def law(x: Any, order: int) -> Any:
     return 20.0 * value / 60.0**order
 
 
+@pytest.mark.slow
 def test_a_limit_of_the_acceleration_takes_the_rows_that_it_needs(tmp_path: Path) -> None:
     def steps(options: str) -> tuple[int, float]:
         report, _, columns = one(tmp_path, options)

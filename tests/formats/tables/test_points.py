@@ -161,6 +161,7 @@ def test_a_table_of_a_machine_is_one_with_any_suffix(tmp_path: Path) -> None:
     assert "interpolation" in {check.name for check in report.checks}
 
 
+@pytest.mark.slow
 def test_a_list_of_points_is_of_one_contour(tmp_path: Path) -> None:
     recipe = written(tmp_path, "stem")
     camgeo.export(recipe, tmp_path / "out")

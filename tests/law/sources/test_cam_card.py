@@ -195,6 +195,7 @@ def crossed(members, shares, half, at):
     return half * low, sum(share * 2.0 * c[0] for share, c, _ in terms)
 
 
+@pytest.mark.slow
 @pytest.mark.thin(3)
 @pytest.mark.parametrize(("other", "members", "shares", "half", "seconds"), BORDER)
 def test_true_lobes_of_few_members_are_met_though_they_lie_on_the_border(other, members, shares, half, seconds):
@@ -221,6 +222,7 @@ ROUNDED = (  # of a true lobe on the border, in thousandths of a degree: none me
 RAMP = Ramp(0.2, 0.015 * math.degrees(1.0))
 
 
+@pytest.mark.slow
 def test_a_card_that_rounding_took_beyond_the_border_is_met_within_its_rounding():
     cards = side_card(ROUNDED[0], ramp=RAMP), side_card(ROUNDED[1], 2.0, ramp=RAMP)
     first, second = sides_of_card(6.61, *cards, HALF_TURN)
@@ -242,6 +244,7 @@ def test_the_nearest_card_is_the_nearest_over_a_lattice_of_both_angles():
     assert 0.767 <= off <= 0.82
 
 
+@pytest.mark.slow
 def test_uneven_sides_have_the_peak_of_the_worse_one_alone_where_the_other_can_follow_its_nose():
     worse = max(peaks(*sides_of_card(LIFT, card, card, HALF_TURN)) for card in AGREE)
     assert peaks(*sides_of_card(LIFT, *AGREE, HALF_TURN)) == pytest.approx(worse, rel=2e-4)
@@ -359,6 +362,7 @@ def test_sides_whose_noses_do_not_agree_are_refused_with_the_nearest_that_do(mon
     assert nearest - 0.005 < off < nearest + 0.02
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("lift", "card"),
     [
@@ -418,6 +422,7 @@ def velocity(motion, half):
     return float(np.abs(motion.derivatives(np.linspace(0.0, half, 20_001), 1)[1]).max())
 
 
+@pytest.mark.slow
 @pytest.mark.thin(2)
 @pytest.mark.parametrize("card", [CARD[:1], CARD])
 def test_the_velocity_is_the_least_that_a_programme_over_all_angles_finds(card):

@@ -69,7 +69,7 @@ def by_free_kernel(x, lo, hi):
     return 2.0 * optimize.lsq_linear(root, np.zeros(len(x)), (lo, hi), tol=1e-15, max_iter=1000).cost
 
 
-@pytest.mark.thin(2)
+@pytest.mark.thin(4)
 @pytest.mark.parametrize("reading", [0.002, 0.02, 0.2])
 def test_with_free_ends_the_integral_is_that_of_their_kernel(reading):
     x = np.linspace(0.0, 3.0, 13) + 0.03 * np.sin(7.0 * np.arange(13))
@@ -226,6 +226,7 @@ def test_many_bounds_are_the_same_as_all_at_once(monkeypatch):
     assert excess_of_bounds(few.curve, limits)[0].max() <= 1e-5
 
 
+@pytest.mark.slow
 @pytest.mark.thin(2)
 @pytest.mark.parametrize("count", [3_000, 120_000])
 def test_a_search_among_noise_ends_before_it_touches_a_thousand_bounds(count, monkeypatch):

@@ -201,6 +201,7 @@ def test_a_least_row_beyond_its_reading_of_0_leaves_the_motion_of_least_jerk(s, 
     assert motion.kept.distance == pytest.approx(off(motion, rows).max(), abs=1e-12)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("reading", [0.02, pytest.param(0.005, marks=pytest.mark.slow)])
 def test_the_motion_follows_the_level_of_its_rows_without_a_jump(reading):
     """Readings of a least row beyond which other rules begin, and places between: 1e-7 moves no motion by 1e-3."""
@@ -218,6 +219,7 @@ def test_the_motion_follows_the_level_of_its_rows_without_a_jump(reading):
                 assert within <= reading
 
 
+@pytest.mark.slow
 def test_the_lowest_dwell_is_at_0_and_its_rows_are_followed_at_any_level():
     """Rows of a dwell beyond twice their reading from 0 are lowered by their level, nearer ones by less."""
     plain = from_table(plate(), 0.0005).derivatives(plate().theta, 0)[0]
@@ -426,6 +428,7 @@ def test_a_row_that_stands_out_is_followed_or_left_out():
     assert dropped.kept.remarks[0].sentence.startswith("line 51: left out, the row stands out")
 
 
+@pytest.mark.slow
 def test_several_rows_that_stand_out_are_all_told():
     rows = broken(outlier)
     rows.s[[250, 200]] = rows.s[[200, 250]]
@@ -438,6 +441,7 @@ def test_several_rows_that_stand_out_are_all_told():
     assert off(from_table(rows, 0.0005, suspect="drop"), plate()).max() <= 0.001
 
 
+@pytest.mark.slow
 def test_rows_that_are_written_twice_and_rows_that_fall_are_the_same_table():
     rows = plate()
     plain = from_table(rows, 0.0005).derivatives(rows.theta, 0)[0]
@@ -457,6 +461,7 @@ def test_a_gap_is_bridged():
 # --- remarks ----------------------------------------------------------------------------------------------------------
 
 
+@pytest.mark.slow
 @pytest.mark.thin(2)
 @pytest.mark.parametrize("readings", [3.0, 30.0])
 def test_noise_beyond_the_digits_is_remarked_with_a_reading_that_calms_it(readings):
@@ -618,7 +623,7 @@ def wavy(x):
     return 2 + x / 40 + mpmath.mpf("1.5") * mpmath.sin(x / 17)
 
 
-@pytest.mark.thin(3)
+@pytest.mark.thin(6)
 @pytest.mark.parametrize(
     ("law", "total"),
     [
@@ -648,6 +653,7 @@ def test_a_law_over_a_length_is_followed_within_its_digits_to_both_ends(law, tot
     assert (off.max(axis=1) <= [2.0 * reading, 3e-6, 6e-6]).all()
 
 
+@pytest.mark.slow
 def test_dwells_of_a_motion_with_open_ends_are_level():
     """One at its beginning, one within; it ends on a rise, whose velocity is kept."""
     bend = mpmath.mpf("0.0004")
@@ -685,7 +691,7 @@ def test_a_motion_with_open_ends_that_rests_at_both_is_a_law():
     assert np.abs(motion.derivatives(fine, 0)[0] - true).max() <= 2e-4
 
 
-@pytest.mark.thin(3)
+@pytest.mark.thin(6)
 @pytest.mark.parametrize("place", [3, 4, 40, 96, 97])
 def test_a_row_that_is_off_is_named_near_open_ends_too(place):
     rows = sampled(wavy, 100.0, places=4)
@@ -702,7 +708,7 @@ def test_a_row_that_is_off_is_named_near_open_ends_too(place):
     assert np.abs(made.derivatives(x, 0)[0] - sound.derivatives(x, 0)[0]).max() <= 2e-4
 
 
-@pytest.mark.thin(3)
+@pytest.mark.thin(6)
 @pytest.mark.parametrize("step", [1.0, 2.5, 5.0])
 @pytest.mark.parametrize("places", [3, 5])
 def test_no_row_of_a_sound_table_with_open_ends_stands_out(step, places):

@@ -213,7 +213,7 @@ def test_rational_and_plain_splines(tmp_path: Path) -> None:
     assert drawing.pieces == 4
 
 
-@pytest.mark.thin(2)
+@pytest.mark.thin(4)
 @pytest.mark.parametrize("degree", [2, 3, 5, 9, 11])
 def test_a_closed_spline_of_one_period(tmp_path: Path, degree: int) -> None:
     """Uniform knots, the first control points repeated at the end: as CAD systems write periodic splines."""
@@ -328,7 +328,7 @@ def test_pieces_no_longer_than_a_gap_are_named(tmp_path: Path) -> None:
     assert (short.kind, short.x, short.y) == ("short", 30.0, 0.0)
 
 
-@pytest.mark.thin(2)
+@pytest.mark.thin(4)
 @pytest.mark.parametrize("side", [1e-3, 1.0, 50.0, 1e6])
 def test_gaps_permitted_by_default_go_with_a_small_drawing(tmp_path: Path, side: float) -> None:
     def square(gap: float) -> Path:

@@ -323,6 +323,7 @@ def test_ccw_is_the_mirror_image_and_the_motion_stays() -> None:
     assert np.isfinite([px, py]).all()
 
 
+@pytest.mark.slow
 def test_dyads_hang_together(tmp_path: Path) -> None:
     path = tmp_path / "dyads.yaml"
     path.write_text(

@@ -126,6 +126,7 @@ def test_no_play_is_refused_with_its_place():
         course(Train(1.0, 1.0, 1e5), drives_, 100.0, 1)
 
 
+@pytest.mark.slow
 def test_a_touch_between_two_samples_is_met():
     """A face that first falls away from the follower, then reaches for it again, within a hundredth of a radian."""
 

@@ -98,6 +98,7 @@ def test_a_search_that_takes_too_much_says_between_which_speeds_float_begins(rat
     assert steady(train, drive, high).force.least < 0.0
 
 
+@pytest.mark.slow
 def test_the_speed_that_floats_is_looked_for_at_resonances_below_it():
     (drive,) = drives([Cycloid(math.radians(120.0), 20e-3)])
     train = stiff(1e5, 1e-8, preload=150.0)
