@@ -380,6 +380,7 @@ def test_undercut_is_told_where_it_is_and_all_else_waits(project: Pytester) -> N
     alone.stdout.fnmatch_lines(["motion*: not judged: radius-of-curvature: -1 mm, more than 0 mm*"])
 
 
+@pytest.mark.slow
 def test_what_trimming_leaves_unjudged_is_skipped_with_the_reason(project: Pytester) -> None:
     add(project, "small", UNDERCUT.replace("cos(3*t)", "cos(3*t), undercut: trim"))
     result = run(project, "-rs", "-k", "motion")

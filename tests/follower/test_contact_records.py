@@ -166,6 +166,7 @@ def test_no_field_of_a_record_is_left_unread(name: str) -> None:
     assert off(name, exchanged(contacts)) > SEEN
 
 
+@pytest.mark.slow
 @pytest.mark.costly("each arrangement is made, as the tests behind it need it")
 def test_every_arrangement_is_there() -> None:
     """Each pair of guide and touch that a recipe may give, with one contact and with two."""

@@ -71,6 +71,7 @@ def test_segments_are_those_of_the_motion():
     assert "harmonic leaves" in second
 
 
+@pytest.mark.slow
 @pytest.mark.costly("all laws are tried on each stroke")
 def test_a_turn_that_begins_in_a_stroke_has_none():
     told = motion(45.0)
@@ -78,6 +79,7 @@ def test_a_turn_that_begins_in_a_stroke_has_none():
     assert known.segments() == (None, STROKES_BEGIN)
 
 
+@pytest.mark.slow
 @pytest.mark.costly("all laws are tried on each stroke")
 def test_laws_that_leave_more_than_may_be_are_none():
     told = motion(0.0)

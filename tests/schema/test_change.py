@@ -94,6 +94,7 @@ def test_what_an_alias_shares_is_left_alone() -> None:
         set_value(source, "part.bore", 13)
 
 
+@pytest.mark.slow
 def test_any_scalar_of_the_shipped_recipes_can_be_replaced() -> None:
     dice = random.Random(7)
     assert len(RECIPES) >= 30

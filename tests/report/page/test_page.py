@@ -352,6 +352,7 @@ def test_dyads_hang_together(tmp_path: Path) -> None:
     assert made.plot("Output") == pytest.approx((sx - 150.0) * c + (sy - 20.0) * s, abs=5e-3)
 
 
+@pytest.mark.slow
 def test_lengths_are_in_the_recipes_unit_and_angles_in_degrees() -> None:
     made = of("slider-crank")
     mechanism = designed(made.recipe).driven.mechanism
