@@ -4,8 +4,8 @@ Rows: a test marked `thin(n)` runs on a diagonal of its rows, those whose places
 of n; the others are slow. A table of n cams by n faults so has each fault once, and each cam.
 
 Property tests: a run repeats the last one's examples, so that a change is judged by what it changes;
-`HYPOTHESIS_PROFILE=explore` looks for new ones, and what it finds becomes an example of its own. A quick run takes an
-eighth of them; any other, such as `pytest -m slow`, takes all, and every property test counts as slow in it.
+`HYPOTHESIS_PROFILE=explore` looks for new ones, and what it finds becomes an example of its own. A quick run takes a
+sixteenth of them; any other, such as `pytest -m slow`, takes all, and every property test counts as slow in it.
 
 Time: the tests of a file run in one process of xdist, so that what they share is made once; compiled modules are kept
 even where the shell asks for none (PYTHONDONTWRITEBYTECODE), since every process that a test starts would compile
@@ -48,7 +48,7 @@ if signal.getsignal(signal.SIGINT) is signal.SIG_IGN:
 QUICK = "not slow"
 DIGITS = 50  # of mpmath
 UNTIMED = settings(deadline=None, suppress_health_check=[HealthCheck.too_slow])  # a busy machine is no fault
-settings.register_profile("quick", UNTIMED, derandomize=True, max_examples=FULL // 8)
+settings.register_profile("quick", UNTIMED, derandomize=True, max_examples=FULL // 16)
 settings.register_profile("repeat", UNTIMED, derandomize=True, max_examples=FULL)
 settings.register_profile("explore", UNTIMED, max_examples=FULL)
 

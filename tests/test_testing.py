@@ -86,6 +86,7 @@ def test_breadth_of_a_good_file(tmp_path, vertices, write):
         assert 49.999 <= found.least < found.greatest <= 50.0 + 1e-5
 
 
+@pytest.mark.slow
 def test_breadth_is_that_of_the_whole_turn(tmp_path):
     # an ellipse-like p = 20 + cos 2t has breadth 40 + 2 cos 2t
     path = dxf(tmp_path, support_points(2000, 20.0, ((2, 1.0, 0.0),)))

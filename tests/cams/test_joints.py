@@ -149,6 +149,7 @@ def test_a_formula_of_a_route_is_refused_at_its_field(route, problem):
     assert problem in str(error)
 
 
+@pytest.mark.slow
 def test_d_by_a_formula_passes_for_rollers_and_flats():
     assert report(f"{ROLLER.replace('2,', '4/3,', 1)}, delta: {{formula: 600*cos(4*t) + 40*cos(4*t)**3}}")["ok"]
     assert report("kind: flat-pair, ratio: 2, arm: 30, delta: {formula: 200*cos(2*t)}")["ok"]

@@ -330,6 +330,7 @@ def test_hull_of_points_on_a_grid(points: list[tuple[int, int]]) -> None:
     assert ring.exterior.is_ccw
 
 
+@pytest.mark.slow
 def test_hull_of_a_circle_with_one_point_pulled_out() -> None:
     """A thousand corners vanish behind it, one after the other: the part that whole passes do not finish."""
     shapely = pytest.importorskip("shapely")

@@ -85,7 +85,7 @@ def shown(text):
     return reading(root_key(source)).read(source, Path("shown.yaml"))
 
 
-@pytest.mark.thin(3)
+@pytest.mark.thin(4)
 @pytest.mark.parametrize("text", of("yaml", whole=True))
 def test_a_recipe_is_read(text):
     shown(text)
@@ -288,7 +288,7 @@ def called():
     return [pytest.param(lines, id=page, marks=slow.get(lines[-1][0], ())) for page, lines in found.items() if lines]
 
 
-@pytest.mark.thin(2)
+@pytest.mark.thin(4)
 @pytest.mark.parametrize("lines", few(called(), 3))
 def test_commands_of_shell_blocks_run(lines, workshop, monkeypatch, capsys):
     monkeypatch.chdir(workshop)

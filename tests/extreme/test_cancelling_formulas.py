@@ -96,6 +96,7 @@ def below_the_noise():
     yield Row("`p: 25 + (1e9 + cos(3*t)) - 1e9`", "a file within 1e-6 mm", said, "at least 2.74e-06 mm", "as stated")
 
 
+@pytest.mark.slow
 @pytest.mark.thin(16)
 @pytest.mark.parametrize("name", names(cases(), SLOW))
 def test_it_holds_and_the_page_shows_it(name):

@@ -96,6 +96,7 @@ def recipe(touching, base, rows, motion_error=None):
     return load_text(touching.recipe(base, rows, more), "cam.yaml")
 
 
+@pytest.mark.slow
 @pytest.mark.thin(20)
 @pytest.mark.parametrize("name", PASSING)
 def test_it_passes(name: str, tmp_path: Path) -> None:

@@ -84,6 +84,7 @@ def test_shaped_bores_in_any_version(tmp_path, version, bore):
     assert not ezdxf.readfile(path).audit().has_errors
 
 
+@pytest.mark.slow
 def test_inch_drawing_is_in_inches_and_its_solid_in_millimetres(tmp_path):
     cam = "units: inch\ncam: {kind: support, p: 1 + 0.05*cos(3*t)}\n"
     bolts = "bolts: {count: 4, circle: 1.3, hole: 0.125}"
@@ -119,6 +120,7 @@ def test_counter_clockwise_mirrors_every_feature(tmp_path):
 # --- STL: prisms ----------------------------------------------------------------------------------------------------
 
 
+@pytest.mark.slow
 def test_prism_with_openings_by_trimesh_and_closed_forms(tmp_path):
     part = (
         "{thickness: 8, bore: 12, keyway: din6885, bolts: {count: 5, circle: 32, hole: 4}, mark: {as: cut, width: 1}}"

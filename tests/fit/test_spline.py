@@ -108,6 +108,7 @@ def test_no_span_of_a_right_length_does_better() -> None:
             assert np.abs(gap).max() > 0.98 * worst[0]
 
 
+@pytest.mark.slow
 @pytest.mark.thin(6)
 @pytest.mark.parametrize("name", few(CONTOURS, 4))
 def test_shipped_contours_are_within_a_fifth_of_the_least_count(name: str) -> None:
@@ -141,6 +142,7 @@ def test_where_sharing_does_not_settle_what_came_nearest_is_halved(tolerance: fl
     assert found.count <= 1.25 * least_spline(contour, tolerance)
 
 
+@pytest.mark.slow
 def test_curves_missed_to_one_side_take_no_more_than_theory_does() -> None:
     for name in ("reuleaux", "reuleaux-nine", "w-ellipse"):
         contour = designed(load(RECIPES / f"{name}.yaml")).only_surface.contour

@@ -84,6 +84,7 @@ def test_excess_over_a_flat_face_is_the_greatest_reach_beyond_it(name, spread):
     assert feet.normal == pytest.approx(unit(feet.parameter), abs=1e-15)
 
 
+@pytest.mark.slow
 @pytest.mark.thin(6)
 @pytest.mark.parametrize("name", PITCHES)
 @pytest.mark.parametrize("spread", [1e-3, 2.0])
@@ -128,6 +129,7 @@ def test_barbier_and_reuleaux_in_closed_form():
     assert area == pytest.approx(np.pi * (25.0**2 - 4 * 2.0**2), rel=1e-14)  # pi (mean^2 - (k^2 - 1) a^2 / 2)
 
 
+@pytest.mark.slow
 @pytest.mark.thin(2)
 @pytest.mark.parametrize("name", [n for n in PITCHES if n != "undercut"])
 def test_area_and_perimeter_of_a_roller_envelope(name):

@@ -384,6 +384,7 @@ def test_swing_and_both_contacts_on_a_circle():
     assert judged.play.least == pytest.approx(second - (pitch - 7.9) - 8.0, abs=1e-12)
 
 
+@pytest.mark.slow
 def test_dwell_of_a_double_roller():
     follower = followers.double_roller(DOUBLES["given law"][0], 8.0)
     motion = follower.judge(through(follower.envelope, 3000), PHI).motion

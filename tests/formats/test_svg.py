@@ -108,6 +108,7 @@ def test_every_form_is_the_cam_by_a_second_reader_too(tmp_path, form, rotation):
     assert {"arcs": "A", "polyline": "L", "spline": "C"}[form] in data
 
 
+@pytest.mark.slow
 def test_drawing_is_at_true_size_and_says_so(engraved):
     _, design, path, _, _ = engraved
     text = path.read_text()

@@ -49,6 +49,7 @@ def failures(recipe: Path, drawing: Path) -> set[str]:
     return {check["name"] for check in report["checks"] if not check["ok"]}
 
 
+@pytest.mark.slow
 @pytest.mark.thin(12)
 @pytest.mark.parametrize("name", FOLLOWERS)
 def test_a_drawing_turned_by_two_hundredths_of_a_degree(tmp_path: Path, name: str) -> None:

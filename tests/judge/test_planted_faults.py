@@ -183,6 +183,7 @@ def test_a_contour_that_is_closed_by_a_chord(tmp_path, cam):
     assert "contour" in failures(write_dxf(tmp_path / "cam.dxf", points(EDGES)[:-40]), intent)
 
 
+@pytest.mark.slow
 @pytest.mark.thin(6)
 @pytest.mark.parametrize("scale", [1.001, 0.999])
 def test_scale(tmp_path, cam, scale):
@@ -263,6 +264,7 @@ def test_a_segment_of_no_length(tmp_path, cam):
     assert "closed" in failures(write_dxf(tmp_path / "cam.dxf", doubled), intent)
 
 
+@pytest.mark.slow
 @pytest.mark.thin(3)
 def test_a_mirrored_cam(tmp_path, cam):
     intent, points = cam
@@ -460,6 +462,7 @@ def test_a_solid_cut_short(tmp_path, cam, lost):
     assert failures(path, intent) == {"readable"}
 
 
+@pytest.mark.slow
 @pytest.mark.thin(3)
 def test_a_solid_moved(tmp_path, cam):
     intent, points = cam

@@ -120,7 +120,7 @@ def case(request):
     return request.param
 
 
-@pytest.mark.thin(2)
+@pytest.mark.thin(4)
 def test_the_lift_is_that_of_the_loop(case):
     with mp.workdps(30):
         exact, lift = Exact(case), case.lift()

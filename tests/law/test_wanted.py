@@ -85,6 +85,7 @@ def test_three_harmonics_by_mpmath():
     assert found.least <= found.error <= found.least * (1 + 1e-6)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("lam", "name", "harmonics"),
     [

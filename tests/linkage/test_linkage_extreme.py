@@ -166,6 +166,7 @@ def test_links_from_a_millionth_to_a_million_breadths(assembly):
     hold(cases)
 
 
+@pytest.mark.slow
 @pytest.mark.thin(6)
 @pytest.mark.parametrize("assembly", ASSEMBLIES)
 @pytest.mark.parametrize("power", [-6.0, -9.0, -15.0, -300.0, -math.inf])

@@ -149,7 +149,7 @@ def test_a_polygon_in_a_rigid_frame(kind):
 # The shaft angle
 
 
-@pytest.mark.thin(2)
+@pytest.mark.thin(4)
 def test_shaft_angle_and_its_inverse(driven):
     shaft = np.linspace(-20, 20, 777)
     theta = driven.relative(shaft)
@@ -180,7 +180,7 @@ def test_either_limit_of_a_loop_is_followed_by_itself(monkeypatch, loop):
     assert {rows for rows, _ in counts} == {2}
 
 
-@pytest.mark.thin(2)
+@pytest.mark.thin(4)
 def test_derivatives_over_the_shaft_are_those_of_the_output_at_shaft_angles(driven):
     shaft, step = np.linspace(0.1, 6.1, 13), 1e-3
 

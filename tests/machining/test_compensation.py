@@ -229,6 +229,7 @@ def test_a_set_of_bodies_has_a_clearance_of_its_own():
         recipe_of("{stl: {parts: all, clearance: 0.2}}")
 
 
+@pytest.mark.slow
 def test_laws_of_longer_arms():
     for cam in (ROLLER, ARC, PAIR):
         law_of = designed(recipe_of("dxf", cam=cam)).exact.law

@@ -163,6 +163,7 @@ def test_nose_of_a_half_turn_is_in_its_middle() -> None:
         designed(load_text(f"{text}powers: [2, 6, 8, 10, 12]}}}}}}\n", "r"))
 
 
+@pytest.mark.slow
 def test_round_tappet() -> None:
     text = LOBE % (", diameter: %s, axial_offset: -2", "")
     recipe = load_text(text % 30, "r")
@@ -196,6 +197,7 @@ def test_a_table_of_crank_degrees_that_is_read_as_one_of_the_cam_says_what_to_gi
     designed(load_text(text % ", angle: crank, reading: 0.01", str(tmp_path / "lobe.yaml")))
 
 
+@pytest.mark.slow
 def test_table_in_thousandths(tmp_path) -> None:
     motion = lobe(8.0, 68 * DEGREE, POWERS)
     rows = [(k, at(motion, float(k % 360))) for k in range(360)]

@@ -166,6 +166,7 @@ def test_a_files_dwell_that_is_shorter_than_the_intended_one_is_remarked() -> No
             assert remark["sentence"].startswith("a.dxf: the output dwells for 82.489 deg of the 93.223 intended")
 
 
+@pytest.mark.slow
 def test_remarks_are_shown_everywhere_and_fail_nothing(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     path = tmp_path / "roller.yaml"
     path.write_text(ROLLER + "part: {thickness: 200}\nverify: {angles: 120}\nexport: {files: [dxf, html]}\n")

@@ -75,6 +75,7 @@ def test_a_drawing_in_another_unit(tmp_path):
     assert moved(made)[0] == pytest.approx(moved(intended)[0], abs=0.006)
 
 
+@pytest.mark.slow
 def test_the_report_of_a_contour_has_its_distance_and_no_line(tmp_path):
     exported(tmp_path, "roller")
     report = pipeline.check(recipe("{contour: out/cam/cam.dxf, reading: 0.003}", tmp_path, "roller")).report
@@ -150,7 +151,7 @@ def test_points_in_a_file_without_a_unit_are_in_that_beside_it(tmp_path):
     assert moved(made)[0] == pytest.approx(moved(intended)[0], abs=0.04)
 
 
-@pytest.mark.thin(5)
+@pytest.mark.thin(20)
 @pytest.mark.parametrize(
     ("motion", "message"),
     [
@@ -211,6 +212,7 @@ def test_a_gap_is_refused_with_the_key_that_closes_it_and_a_contour_is_placed(tm
     assert np.ptp(moved(made)[0]) == pytest.approx(6.0, abs=0.012)
 
 
+@pytest.mark.slow
 def test_points_that_leave_a_stretch_out_are_closed_across_and_that_is_told(tmp_path):
     intended = contacts(tmp_path, "roller")
     heading, *rows = (tmp_path / "old.csv").read_text().splitlines()

@@ -97,6 +97,7 @@ def intervals(count: int) -> tuple[np.ndarray, np.ndarray]:
     return low, low + wide
 
 
+@pytest.mark.thin(5)
 @pytest.mark.parametrize("count", [1, 2, 6, 22, 96])
 def test_polynomials_over_intervals(count: int) -> None:
     """Bounds hold what mpmath gives at random places, and are as tight as Horner's scheme on series."""

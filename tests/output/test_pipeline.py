@@ -369,6 +369,7 @@ def test_a_file_of_the_recipes_own_name_is_judged_by_its_own_tolerance(tmp_path:
     assert {check["file"] for check in report["checks"] if not check["ok"]} == {"other.stl"}
 
 
+@pytest.mark.slow
 @pytest.mark.thin(2)
 @pytest.mark.parametrize(
     ("clearance", "rounding", "breadth", "told"),

@@ -130,6 +130,7 @@ def test_what_is_drawn_is_the_same_to_the_last_digits(kind: str, request: pytest
     assert inches.contour.area == pytest.approx(millimetres.contour.area, rel=1e-13)
 
 
+@pytest.mark.slow
 @pytest.mark.thin(4)
 @pytest.mark.parametrize(
     "kind",
@@ -237,6 +238,7 @@ def test_the_words_of_a_program(made: Made) -> None:
     assert INCH * feeds[1] == pytest.approx(feeds[0], rel=1e-4)
 
 
+@pytest.mark.slow
 @pytest.mark.thin(4)
 @pytest.mark.parametrize("table", ["motion", "contacts", "polar", "inspection"])
 def test_the_columns_of_a_table(table: str, tmp_path: Path) -> None:
@@ -320,6 +322,7 @@ def test_a_mesh_has_the_unit_of_its_request(made: Made, tmp_path: Path, capsys: 
     assert np.abs(surface.contour.vertices).max() > 35.0
 
 
+@pytest.mark.slow
 def test_an_inch_recipe_with_files_in_mm(tmp_path: Path) -> None:
     recipe = recipe_of("dxf", "csv", units="inch", own=("mm",))
     outcome = pipeline.export(recipe, tmp_path)

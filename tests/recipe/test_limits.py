@@ -824,6 +824,7 @@ def test_what_is_said_of_a_missed_limit() -> None:
         assert told.startswith(words) if words.endswith(" ") else told == words, (name, value, bound)
 
 
+@pytest.mark.slow
 def test_a_lobe_s_limit_says_its_lift_where_it_holds() -> None:
     (found,) = held(VALVE, "{duration: {at_least: 100}}")
     assert (found["ok"], found["detail"]) == (True, "at a lift of 1.27 mm")

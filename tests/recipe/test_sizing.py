@@ -162,6 +162,7 @@ def fault(text: str) -> str:
     return str(error)
 
 
+@pytest.mark.slow
 def test_a_face_on_an_arm_that_no_size_rounds_is_told_which_face_does() -> None:
     text = FACE.replace("least: 10", "least: 114").replace("face: 5", "face: 5.5")
     told = re.search(r"a face below (\S+) mm does", fault(text))

@@ -171,6 +171,7 @@ def test_d02_roller_offset(eccentricity):
     proved(recipe, design)
 
 
+@pytest.mark.slow
 def test_d03_flat():
     recipe, design = made(f"base_radius: 30, follower: {{kind: flat}}, motion: {M03}")
     shape = contour_of(design)
@@ -198,6 +199,7 @@ def contact_within(shape, low, high):
     assert greatest(shape.law.contact, stretches(shape)).value == pytest.approx(high, abs=NINE)
 
 
+@pytest.mark.slow
 def test_d04_flat_tilted():
     recipe, design = made(f"base_radius: 32, follower: {{kind: flat, tilt: 8, offset: 5}}, motion: {M03}")
     shape = contour_of(design)

@@ -179,6 +179,7 @@ FAULTS = {
 }
 
 
+@pytest.mark.slow
 @pytest.mark.thin(7)
 @pytest.mark.parametrize("fault", FAULTS)
 def test_a_planted_fault_is_refused(fault, stem, tmp_path):

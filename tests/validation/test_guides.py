@@ -86,6 +86,7 @@ def test_f25_of_a_roller(source, at, alpha, force, tmp_path):
     assert contact["max"] >= force * (1.0 - 1e-9)
 
 
+@pytest.mark.slow
 def test_f25_of_a_flat_face(tmp_path):
     """Touched 9 mm from the axis on the rise: the greatest force of the turn; both ends bear the couple."""
     source = text(base=40.0, follower="kind: flat", motion=WAVE.format(a=9.0))

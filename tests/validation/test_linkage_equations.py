@@ -25,6 +25,7 @@ FOUR_BARS = [name for name, figure in FIGURES.items() if figure.coupler is not N
 INVERTED = [name for name, figure in FIGURES.items() if figure.coupler is None]
 
 
+@pytest.mark.slow
 @pytest.mark.thin(8)
 @pytest.mark.parametrize("name", FOUR_BARS)
 def test_equations_11_to_13_hold_for_our_positions(name):
@@ -106,6 +107,7 @@ def test_equation_34_of_appendix_1(name):
     assert apart(top[clear] / bottom[clear], w4[clear]) < 1e-9
 
 
+@pytest.mark.slow
 @pytest.mark.thin(12)
 @pytest.mark.parametrize("name", FOUR_BARS)
 def test_equation_34_vanishes_over_itself_where_theta_3_is_theta_4_and_ours_does_not(name):

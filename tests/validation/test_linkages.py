@@ -177,6 +177,7 @@ def test_dwells_over_either_angle(name, band):
         assert found.greatest - found.least <= np.radians(band) * (1 + 1e-9)
 
 
+@pytest.mark.slow
 def test_only_a_turning_frame_shortens_a_dwell_over_the_shaft():
     """theta_3 + theta_4 = 90 deg in the inverted slider-crank: while its output rests, so does the frame."""
     for name, differs in (("as-figure-9-2a", True), ("as-figure-13-2a", False)):

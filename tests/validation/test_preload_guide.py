@@ -230,6 +230,7 @@ def test_the_check_on_jamming(name):
         assert jam["value"] == pytest.approx(6.0, abs=1e-9)
 
 
+@pytest.mark.slow
 def test_a_stem_that_jams():
     """A stem jams by one contact alone, which the check tells; or both wedge it between them, which is refused."""
     slack = running("yoke", STIFF, (40.0, 50.0, 4.1), "mass: 1, rpm: 60")

@@ -147,6 +147,7 @@ def constant_breadth(request, workshop):
     return exported(workshop, request.param), CONSTANT_BREADTH[request.param]
 
 
+@pytest.mark.slow
 @pytest.mark.thin(18)
 def test_equation_4_breadth_is_constant_at_every_angle_of_the_file(constant_breadth):
     made, (breadth, _, _) = constant_breadth

@@ -94,6 +94,7 @@ def test_the_report_of_a_train_under_a_spring() -> None:
     assert (checks[0]["limit"], checks[0]["unit"], checks[0]["sense"]) == (0.0, "N", "at_least")
 
 
+@pytest.mark.slow
 def test_the_speed_at_which_a_rigid_follower_floats_lies_between_any_places() -> None:
     """Norton's modified sine by mpmath, (F + k s)/(m s'') over 110 degrees to 20 digits."""
     disc = """\
@@ -193,6 +194,7 @@ def test_in_flight_nothing_is_said_of_how_fast_a_free_motion_dies_away() -> None
     assert "turns_to_one_percent" not in flies["transient"]
 
 
+@pytest.mark.slow
 @pytest.mark.thin(2)
 @pytest.mark.parametrize(("play", "faces"), [("0.02", ["lower", "upper"]), ("50", [])])
 def test_which_faces_bear(play: str, faces: list[str]) -> None:
@@ -308,6 +310,7 @@ verify: {angles: 120}
         recipe(train.replace("preload: 8", "backlash: 0.1"), four_bar)
 
 
+@pytest.mark.slow
 @pytest.mark.thin(3)
 @pytest.mark.parametrize("train", [TRAIN, TRAIN.replace("preload: 150", "backlash: 0.02"), ""])
 def test_the_checks_are_foreseen(train: str) -> None:

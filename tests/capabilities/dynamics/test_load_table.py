@@ -75,6 +75,7 @@ def test_the_same_load_in_other_words(rows: str, more: str, tmp_path: Path) -> N
     assert given_ == pytest.approx(running(recipe(tmp_path)).load(phi), abs=1e-9)
 
 
+@pytest.mark.slow
 def test_a_table_and_the_formula_of_the_same_load(tmp_path: Path) -> None:
     """Two straight lines: every extreme of the forces is that of abs(t - pi), whose corners the search has to find."""
     table = recipe(tmp_path, f"0, {100 * math.pi!r}\n180, 0\n")

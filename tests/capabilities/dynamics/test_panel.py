@@ -100,6 +100,7 @@ def test_text_and_page() -> None:
         assert "lbf" not in text
 
 
+@pytest.mark.slow
 def test_the_page_of_an_elastic_train() -> None:
     elastic = INCHES.replace("load: 5 lbf, material: steel", "stiffness: 4000 lbf/in, damping: 60").partition("limits")[
         0

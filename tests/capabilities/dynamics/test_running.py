@@ -62,6 +62,7 @@ def test_pressure_by_hertz_of_two_materials() -> None:
     )
 
 
+@pytest.mark.slow
 def test_a_limit_is_told_and_not_judged() -> None:
     """The weaker of both; far above it nothing fails but where the recipe limits the figure."""
     plain = report(f"{OWN}}}")["forces"]["pressure"][0]
@@ -171,6 +172,7 @@ def pressure_of(text: str) -> tuple[float, dict[str, Any]]:
     return max(one["max"] for one in found["pressure"]), found["width"]
 
 
+@pytest.mark.slow
 @pytest.mark.thin(10)
 @pytest.mark.parametrize(
     ("part", "width", "track", "value", "bound"),

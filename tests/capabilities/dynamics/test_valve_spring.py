@@ -89,6 +89,7 @@ def reference(ratio: Any) -> tuple[Any, Any]:
     return lambda t: mp.diff(energy, t) / mp.diff(lift, t), mp.findroot(travel, 0.3)
 
 
+@pytest.mark.thin(2)
 @pytest.mark.parametrize(("written", "rows"), [(CONSTANT, None), (TABLE, ROWS)])
 def test_the_force_at_the_tappet_is_that_of_the_energy(written: str, rows: Any) -> None:
     ratio = (lambda _: mp.mpf("1.6")) if rows is None else natural_spline(rows)
@@ -274,6 +275,7 @@ def test_a_valve_that_never_opens_is_refused() -> None:
 
 
 # needs: made
+@pytest.mark.slow
 def test_on_a_made_part_float_is_judged_while_the_valve_is_open(tmp_path: Path) -> None:
     recipe = text("1.5", lash="0").replace(
         "{formula: 4*(1 - cos(t))}",

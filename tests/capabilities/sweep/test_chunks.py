@@ -205,6 +205,7 @@ def test_what_does_not_bear_on_the_figures_leaves_the_key() -> None:
     assert key(SweepTask.from_recipe(read(text.encode(), "four-bar.yaml"))) != plain
 
 
+@pytest.mark.slow
 def test_limits_cost_computing_only_where_they_ask_for_another_figure() -> None:
     def key(limits: str, rank: str = "dwell") -> str:
         text = task(rank=rank).recipe.text.replace("margin: {at_least: 1.0}", limits)

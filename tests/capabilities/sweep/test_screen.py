@@ -175,6 +175,7 @@ def test_what_is_weighed_is_worked_out(rank, why):
     assert ("mass" in asked.figures) == bool(why)
 
 
+@pytest.mark.slow
 def test_few_designs_are_all_exact():
     few, many = (recipe(*CAMS["roller"], sweep=f"method: random, count: {n}, rank: size") for n in (EXACT, EXACT + 1))
     assert not SweepTask.from_recipe(few).screened

@@ -59,6 +59,7 @@ def test_the_best_that_lie_apart_are_polished_and_equal_ones_are_one(jobs: int, 
     assert load(outcome.folder / "best-1.yaml").about.startswith(f"polished from design {best[0]['index']} of 825")
 
 
+@pytest.mark.slow
 @pytest.mark.usefixtures("no_pictures")
 def test_the_table_holds_what_was_polished_and_the_best_lie_apart(tmp_path: Path) -> None:
     text = task(refine="true").recipe.text.replace("keep: 3", "keep: 20")

@@ -216,6 +216,7 @@ def test_where_cubics_pass_a_level():
         assert (np.abs(cubic(found) - cubic(x)) < 1e-12 * (rise + np.abs(cubic.f))).all()
 
 
+@pytest.mark.slow
 def test_extremes_between_samples():
     (f, _), _ = waves(7, 20, 360)
     dense = waves(7, 20, 36_000)[0][0]

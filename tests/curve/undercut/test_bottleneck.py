@@ -37,6 +37,7 @@ def least_of_pairs(curve, count=700):
     return radius.min()
 
 
+@pytest.mark.slow
 @pytest.mark.thin(3)
 @pytest.mark.parametrize("share", [0.5, 0.8, 0.95])
 @pytest.mark.parametrize("e", [1.0, 40.0])

@@ -113,6 +113,7 @@ def test_depth_is_the_lost_motion_of_a_flat_face(base, name):
         assert lost[1:-1].min() > -1e-6
 
 
+@pytest.mark.slow
 def test_the_smallest_base_radius():
     growth = max(u.free_at for u in undercuts(breadth(5.0, "modified-sine")))
     assert undercuts(breadth(5.0 + growth + 1e-9, "modified-sine")) == ()
@@ -200,6 +201,7 @@ def test_depth_of_a_roller_is_how_far_it_hangs_free():
         assert u.depth == pytest.approx(np.hypot(apart[..., 0], apart[..., 1]).min(axis=1).max() - e, abs=1e-5)
 
 
+@pytest.mark.slow
 @pytest.mark.thin(6)
 @pytest.mark.parametrize("excess", [1e-9, 1e-6, 1e-3, 0.1, 0.5])
 def test_the_neck_of_booths_lemniscate(excess):
@@ -247,6 +249,7 @@ def test_both_kinds_at_once():
     assert undercuts(roller(PEAR, smallest * (1.0 - 1e-9))) == ()
 
 
+@pytest.mark.slow
 def test_a_neck_is_reported_beside_sharper_lobes():
     # r = 20 + 10 cos 2t + 2 cos 6t: the waist is 16 mm wide, the ends have the radius 32^2/(32 + 4 * 28) = 7.11 mm
     found = undercuts(roller(waves(20.0, (2, 10.0, 0.0), (6, 2.0, 0.0)), 8.2))

@@ -76,7 +76,7 @@ def joined(head: list[str], columns: dict[str, Any]) -> Any:
 RATES = (("velocity", "SlaveVelo"), ("acceleration", "SlaveAcc"))
 
 
-@pytest.mark.thin(2)
+@pytest.mark.thin(4)
 @pytest.mark.parametrize("cam", CAMS)
 @pytest.mark.parametrize("controller", [name for name in CONTROLLERS if name != "sew"])
 def test_a_drive_is_within_what_its_table_says(cam: str, controller: str, tmp_path: Path) -> None:
@@ -171,6 +171,7 @@ def test_a_curve_point_table_has_so_many_rows_and_no_more(tmp_path: Path) -> Non
     assert (tmp_path / "out" / "cam" / "cam.csv").read_text().startswith("1001\n")
 
 
+@pytest.mark.slow
 @pytest.mark.thin(2)
 @pytest.mark.parametrize(("controller", "tolerance"), [("codesys", "0.00001"), ("codesys-table", "0.01")])
 def test_the_step_is_the_widest_that_holds_the_tolerance(controller: str, tolerance: str, tmp_path: Path) -> None:
@@ -350,6 +351,7 @@ def test_a_table_of_six_degrees_has_its_position_and_loses_its_acceleration(tmp_
     assert f"its acceleration within {check.value:.3g}"[:28] in " ".join(head)
 
 
+@pytest.mark.slow
 @pytest.mark.thin(3)
 @pytest.mark.parametrize("controller", ["twincat", "twincat-table", "rockwell"])
 def test_rows_at_joints_are_fewer_and_at_every_joint(controller: str, tmp_path: Path) -> None:

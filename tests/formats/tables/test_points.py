@@ -49,6 +49,7 @@ def test_the_spline_through_the_points_is_judged_as_a_contour(cam: str, tmp_path
     assert 36 < len(rows) < 2000
 
 
+@pytest.mark.slow
 @pytest.mark.thin(2)
 @pytest.mark.parametrize("suffix", ["txt", "xyz"])
 def test_a_text_has_blanks_between_the_numbers(suffix: str, tmp_path: Path) -> None:

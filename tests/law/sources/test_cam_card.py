@@ -150,6 +150,7 @@ def test_a_card_that_none_meets_is_refused_with_the_nearest_which_is_met(card):
         solved(half_way)
 
 
+@pytest.mark.slow
 def test_uneven_sides_meet_their_own_cards_and_one_acceleration_at_the_nose():
     opening = side_card(((1.27, 112.0), (0.15, 134.0)), 2.0, ramp=Ramp(0.1, 0.01 * math.degrees(1.0)))
     closing = side_card(((1.27, 118.0), (0.2, 138.0)), 2.0)

@@ -69,6 +69,7 @@ def by_free_kernel(x, lo, hi):
     return 2.0 * optimize.lsq_linear(root, np.zeros(len(x)), (lo, hi), tol=1e-15, max_iter=1000).cost
 
 
+@pytest.mark.slow
 @pytest.mark.thin(4)
 @pytest.mark.parametrize("reading", [0.002, 0.02, 0.2])
 def test_with_free_ends_the_integral_is_that_of_their_kernel(reading):

@@ -89,6 +89,7 @@ def test_the_greatest_distance_from_the_rows_is_told_with_its_line():
     assert motion.kept.remarks == ()
 
 
+@pytest.mark.slow
 def test_dwells_are_level_on_their_inner_part_and_the_acceleration_is_continuous():
     motion = from_table(plate(), 0.0005)
     found = [(math.degrees(rest.begin), math.degrees(rest.end), rest.level) for rest in motion.rests]
@@ -414,6 +415,7 @@ def test_the_reading_that_is_advised_lets_a_table_close(unit, word):
     assert from_table(rows, told, suspect="keep").kept.distance <= told
 
 
+@pytest.mark.slow
 def test_a_row_that_stands_out_is_followed_or_left_out():
     rows, sound = broken(outlier), plate()
     motion = from_table(rows, 0.0005)
@@ -525,6 +527,7 @@ def test_a_distance_of_more_than_a_hundredth_of_the_stroke_is_remarked():
     assert from_table(plate(24, 1), 0.05).kept.remarks == ()
 
 
+@pytest.mark.slow
 @pytest.mark.thin(3)
 @pytest.mark.parametrize(("end", "word"), [(2 * math.pi, "radians"), (1.0, "turns"), (100.0, "percent")])
 def test_angles_that_are_hardly_degrees_are_remarked_with_what_they_may_be(end, word):
@@ -623,6 +626,7 @@ def wavy(x):
     return 2 + x / 40 + mpmath.mpf("1.5") * mpmath.sin(x / 17)
 
 
+@pytest.mark.slow
 @pytest.mark.thin(6)
 @pytest.mark.parametrize(
     ("law", "total"),
@@ -691,6 +695,7 @@ def test_a_motion_with_open_ends_that_rests_at_both_is_a_law():
     assert np.abs(motion.derivatives(fine, 0)[0] - true).max() <= 2e-4
 
 
+@pytest.mark.slow
 @pytest.mark.thin(6)
 @pytest.mark.parametrize("place", [3, 4, 40, 96, 97])
 def test_a_row_that_is_off_is_named_near_open_ends_too(place):
@@ -708,6 +713,7 @@ def test_a_row_that_is_off_is_named_near_open_ends_too(place):
     assert np.abs(made.derivatives(x, 0)[0] - sound.derivatives(x, 0)[0]).max() <= 2e-4
 
 
+@pytest.mark.slow
 @pytest.mark.thin(6)
 @pytest.mark.parametrize("step", [1.0, 2.5, 5.0])
 @pytest.mark.parametrize("places", [3, 5])

@@ -235,6 +235,7 @@ def test_steps_are_left_alone():
 # --- what is counted --------------------------------------------------------------------------------------------------
 
 
+@pytest.mark.slow
 def test_what_was_found_counts_into_every_figure(tmp_path):
     """Six digits move corners by up to 1e-4 mm: the verdict is that of the evened section, and as much worse."""
     path = write_text(tmp_path / "cam.stl", tilted_and_back(triangles_of(), decimals("%.6g")), "%.6g")

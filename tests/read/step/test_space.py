@@ -184,6 +184,7 @@ def assembly(shape, path):
     assert "ITEM_DEFINED_TRANSFORMATION" in path.read_text()
 
 
+@pytest.mark.slow
 @kernel
 def test_assemblies_written_by_the_kernel(tmp_path):
     single, path = tmp_path / "single.step", tmp_path / "assembly.step"

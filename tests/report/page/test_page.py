@@ -452,7 +452,7 @@ def test_an_unreadable_file_is_left_out(tmp_path: Path) -> None:
     assert contours_of(recipe, file) is None
     found = content(recipe, designed(recipe), [file])
     assert found.errors == ()
-    parsed(page(recipe, found, {**of("w-ellipse").outcome.report, "files": []}))
+    parsed(page(recipe, found, {**of("shu-wu").outcome.report, "files": []}))
 
 
 @pytest.mark.slow
@@ -702,6 +702,7 @@ def test_the_edges_of_a_face_are_lines() -> None:
     assert shown["Radius of curvature"].limits == ((0.0, ""), (10.0, "at least 10"))
 
 
+@pytest.mark.slow
 def test_the_limits_of_a_preload_are_lines() -> None:
     """Of a yoke in N along its travel, which is each normal; of arms in N m, in pounds for a recipe in inches."""
     preload = "preload: {interference: 0.02 mm, stiffness: [4.5e+7, 4.5e+7]}"
