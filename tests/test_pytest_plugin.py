@@ -213,7 +213,7 @@ def test_a_recipe_runs_once_and_not_before_its_first_item(project: Pytester, cou
     assert counted == ["tiny"]
 
 
-@pytest.mark.thin(2)
+@pytest.mark.thin(4)
 @pytest.mark.parametrize(
     ("file", "text"),
     [

@@ -53,6 +53,7 @@ def refused(*args: str, **kwargs: str) -> str:
     return str(error).removeprefix("pair.yaml:")
 
 
+@pytest.mark.thin(3)
 @pytest.mark.parametrize(
     ("follower", "conjugate", "message", "repair"),
     [
@@ -197,6 +198,7 @@ def test_a_bell_crank_is_sized_by_both_discs(side: str) -> None:
         assert max(angles[0] - 35, angles[1] - 30, angles[2] - 35, angles[3] - 30) > 1e-3
 
 
+@pytest.mark.slow
 def test_flat_faces_are_sized_by_both_discs() -> None:
     size = "sizing: {radius-of-curvature: {at_least: 30}}"
     assert pair("kind: flat", "distance: 90", LOW, size).contours
@@ -307,6 +309,7 @@ def test_a_tiny_and_a_large_second_roller(radius: float) -> None:
     assert np.hypot(*second.curve.sample(angle).point.T) == pytest.approx(0.01 * radius, abs=1e-12)
 
 
+@pytest.mark.slow
 def test_arms_square_to_the_line_of_centres() -> None:
     """Where arm 2 points at the tangent from the pivot b = C sin psi2 is greatest, and nothing is singular there."""
     psi = math.degrees(math.acos((80**2 + 65**2 - 44**2) / (2 * 80 * 65)))

@@ -72,7 +72,7 @@ def test_what_jumps_first_is_told(motion, order):
     assert ("acceleration-jump" in {one["name"] for one in found["remarks"]}) == (order == 2)
 
 
-@pytest.mark.thin(2)
+@pytest.mark.thin(4)
 @pytest.mark.parametrize(
     "motion",
     [
@@ -86,6 +86,7 @@ def test_a_smooth_motion_has_no_joints(motion):
     assert report(f"{BREADTH}, motion: {motion}")["joints"] == []
 
 
+@pytest.mark.slow
 def test_joints_of_a_swing_are_those_of_its_period():
     """With psi' = 0 the image of psi over the next delta has -psi'' (W 4.9)."""
     a = 4 / 2 * (math.pi / math.radians(45)) ** 2
@@ -98,6 +99,7 @@ def test_joints_of_a_swing_are_those_of_its_period():
     ]
 
 
+@pytest.mark.slow
 def test_a_first_arc_by_a_formula_tells_its_joints():
     cam = f"{ROLLER.replace('2,', '3,', 1)}, arc: {{formula: 120*cos(pi/6) + 2*sin(3*t)}}"
     first, second = jumps(cam, 2)

@@ -130,6 +130,7 @@ def test_json_stays_json_where_it_is_escaped(monkeypatch: pytest.MonkeyPatch) ->
         assert "\x7f" not in text
 
 
+@pytest.mark.thin(3)
 @pytest.mark.parametrize("command", ["check", "export", "verify", "report", *ADDED, "new"])
 def test_control_characters_of_a_path(command: str, capsys: pytest.CaptureFixture[str], tmp_path: Path) -> None:
     name = str(tmp_path / "\x1b[31m\nred.yaml")

@@ -65,7 +65,7 @@ def test_a_limacon_has_its_closed_area() -> None:
     assert found.perimeter == pytest.approx(float(mp.quad(speed, [0, mp.pi, 2 * mp.pi])), rel=1e-13)
 
 
-@pytest.mark.thin(3)
+@pytest.mark.thin(6)
 @pytest.mark.parametrize("name", CONTOURS)
 def test_against_the_polygon_and_dense_samples(name: str) -> None:
     curve = Curve.whole(CONTOURS[name])

@@ -91,7 +91,7 @@ def test_a_recipe_is_read(text):
     shown(text)
 
 
-@pytest.mark.thin(20)
+@pytest.mark.thin(40)
 @pytest.mark.parametrize("text", few(of("yaml", whole=True), 4))
 def test_a_recipe_is_made_and_passes(text):
     recipe = shown(text)
@@ -261,7 +261,7 @@ def scripts():
     return sorted({b.page for b in blocks() if b.language == "python"} - RUN_ELSEWHERE)
 
 
-@pytest.mark.thin(2)
+@pytest.mark.thin(4)
 @pytest.mark.parametrize("page", few(scripts(), 3))
 def test_python_runs(page, workshop, monkeypatch):
     monkeypatch.chdir(workshop)

@@ -131,7 +131,7 @@ def test_it_is_refused(name: str) -> None:
     assert error.line > 0
 
 
-@pytest.mark.thin(4)
+@pytest.mark.thin(8)
 @pytest.mark.parametrize("name", FAILING)
 def test_it_fails_before_a_file_is_made(name: str) -> None:
     touching, base, rows, check = FAILING[name]

@@ -145,7 +145,7 @@ FAULTS = {
 }
 
 
-@pytest.mark.thin(4)
+@pytest.mark.thin(8)
 @pytest.mark.parametrize("fault", FAULTS)
 def test_a_spoilt_ring_is_caught(tmp_path, fault):
     recipe = ring("{outer: 130}")

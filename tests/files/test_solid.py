@@ -134,6 +134,7 @@ def test_prism_with_openings_by_trimesh_and_closed_forms(tmp_path):
     assert mesh.volume == pytest.approx(8 * area, rel=1e-4)  # arcs of keyway and slot are chords inside them
 
 
+@pytest.mark.thin(4)
 @pytest.mark.parametrize("outline", [keyed(6, 4, 1.8, 0.7), flattened(6, 10.5, 2), polygonal(6, 10, 0.1), slot(3, 9, 2),
                                      disc("", "HOLES", (5.0, 3.0), 2.0).outline])  # fmt: skip
 @pytest.mark.parametrize("tolerance", [0.1, 1e-3, 1e-5])
@@ -174,7 +175,7 @@ def test_regions_with_holes_are_covered_once(count, corners, turn, random):
     covers_once(SQUARE, holes)
 
 
-@pytest.mark.thin(3)
+@pytest.mark.thin(6)
 @pytest.mark.parametrize("corners", few([3, 4, 5, 7, 24], 3))
 @pytest.mark.parametrize("turn", [0.0, 0.5, math.pi / 4])
 @pytest.mark.parametrize("side", [3, 5, 9])
@@ -200,6 +201,7 @@ def test_openings_in_line_leave_no_flat_triangle():
     covers_once(SQUARE, [np.add(square, (x, y)) for x in range(-28, 28, 2) for y in range(-28, 28, 2)])
 
 
+@pytest.mark.thin(3)
 @pytest.mark.parametrize("number", few(range(120), 20))
 def test_random_parts_with_holes_are_covered_once_at_any_tolerance(number):
     """Grids, bolt circles and scattered holes, round, square and with corners in line, in a round or lobed rim."""

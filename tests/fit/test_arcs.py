@@ -161,7 +161,7 @@ def test_polygon_is_proved_full_and_small(lift: Lift, tolerance: float) -> None:
     assert polygon.count <= max(math.ceil(1.01 * least) + 1 + len(lift.breaks), 3)
 
 
-@pytest.mark.thin(6)
+@pytest.mark.thin(12)
 @pytest.mark.parametrize("tolerance", few(TOLERANCES, 2))
 def test_arcs_are_proved_and_few(lift: Lift, tolerance: float) -> None:
     curve = Curve.whole(SupportShape(lift))

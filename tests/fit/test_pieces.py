@@ -146,7 +146,7 @@ class TestArcs:
 
 
 class TestSpline:
-    @pytest.mark.thin(2)
+    @pytest.mark.thin(4)
     @pytest.mark.parametrize(
         "spline", [closed_spline(), periodic_spline(), periodic_spline(8, 2), periodic_spline(11, 5)]
     )

@@ -228,6 +228,7 @@ def test_spans_between_nodes_that_stay_are_not_sought_again(monkeypatch: pytest.
     assert np.array_equal(again.worst[old], first.worst[kept])
 
 
+@pytest.mark.thin(3)
 @pytest.mark.parametrize(
     ("sides", "rounding", "count"), [(99, 1e-12, 99), (5, 1e-14, 5), (3, 1e-12, 3), (99, 1e-9, 99), (3, 1e-6, 6)]
 )

@@ -130,6 +130,7 @@ def test_tilted_face_contact_is_that_of_the_farthest_corner(tilt, seed):
     assert found == pytest.approx(reached.max(axis=0), abs=1e-12)
 
 
+@pytest.mark.thin(3)
 @pytest.mark.parametrize("seed", SEEDS)
 @pytest.mark.parametrize("side", [TRAILING, LEADING])
 @pytest.mark.parametrize("offset", [10.0, -8.0])
@@ -181,7 +182,7 @@ def test_the_greatest_error_is_proved_over_all_angles(name, seed):
     assert there == pytest.approx(judged.max, rel=1e-6)
 
 
-@pytest.mark.thin(8)
+@pytest.mark.thin(16)
 @pytest.mark.parametrize("distance", [1e-3, -1e-3])
 @pytest.mark.parametrize("name", FOLLOWERS)
 def test_the_limit_holds_on_parallel_contours_and_is_sharp(name, distance):
@@ -206,6 +207,7 @@ def test_dwells_are_told_and_how_flat_they_are(name):
         assert judged.dwell_flatness < 1e-12
 
 
+@pytest.mark.thin(2)
 @pytest.mark.parametrize("radius", [1e3, 1e4, 1e5, 1e6])
 def test_a_shoe_as_flat_as_a_face_is_judged_like_one(radius):
     """A large shoe's contour is still told from the exact one, though its pitch curve is far away."""
@@ -232,6 +234,7 @@ def test_a_face_whose_contact_reaches_the_pivot_is_told():
 # --- drives -----------------------------------------------------------------------------------------------------------
 
 
+@pytest.mark.thin(2)
 @pytest.mark.parametrize("name", few(FOLLOWERS, 8))
 def test_what_drives_a_train_is_the_contact_and_its_derivatives(name):
     follower = FOLLOWERS[name]
@@ -251,13 +254,14 @@ def test_what_drives_a_train_is_the_contact_and_its_derivatives(name):
 # --- at the edge ------------------------------------------------------------------------------------------------------
 
 
+@pytest.mark.thin(2)
 @pytest.mark.parametrize("offset", [43.0, -44.0, 44.9])
 def test_an_eccentricity_near_the_prime_radius_is_proved(offset):
     made = fitted(Parallel(CentreShape(M02, Stem.on(45.0, offset)), 9.0), 1e-5)
     proved(on_stem(M02, 45.0, offset, 9.0), made, 1e-5)
 
 
-@pytest.mark.thin(2)
+@pytest.mark.thin(4)
 @pytest.mark.parametrize("side", [1, -1])
 @pytest.mark.parametrize("prime", [17.0, 15.2])
 def test_an_arm_that_comes_near_to_pointing_at_the_shaft_is_proved(prime, side):

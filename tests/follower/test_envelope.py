@@ -110,7 +110,7 @@ def test_pitch_curve_in_polar_form_is_the_papers():
     assert near == pytest.approx(0.0, abs=1e-12)
 
 
-@pytest.mark.thin(2)
+@pytest.mark.thin(4)
 @pytest.mark.parametrize("name", [n for n in LIFTS if n != "undercut"])
 def test_area_and_perimeter_of_a_flat_envelope(name):
     envelope = FlatEnvelope(LiftPitch(LIFTS[name]))
@@ -162,7 +162,7 @@ def test_support_of_a_pair_is_the_polar_pitch_curve(name):
     assert second == pytest.approx(0.0, abs=1e-7)
 
 
-@pytest.mark.thin(3)
+@pytest.mark.thin(6)
 @pytest.mark.parametrize("name", ["hypocycloid", "rounded Reuleaux", "sharp Reuleaux", "Shu and Wu"])
 @pytest.mark.parametrize("count", [8, 40, 500])
 def test_deviation_of_convex_polygons_is_the_difference_of_support_functions(name, count):

@@ -85,7 +85,7 @@ def test_regular_polygon_where_the_given_angles_miss_the_worst(sides):
     assert np.abs(normals - motion.at_deg).min() < 1e-9
 
 
-@pytest.mark.thin(3)
+@pytest.mark.thin(6)
 @pytest.mark.parametrize("share", [0.1, 0.3, 0.5, 0.7])
 @pytest.mark.parametrize("count", [3, 7, 40])
 @pytest.mark.parametrize("turn", [0.0, -1e-17, 1e-17, 0.4, np.pi / 2])
@@ -415,6 +415,7 @@ def test_limits_hold_and_are_reached_by_the_parallel_contours(name):
     assert 0.95 * play < gap < 1.001 * play
 
 
+@pytest.mark.slow
 @pytest.mark.thin(4)
 @pytest.mark.parametrize("name", PAIRS)
 def test_limits_of_a_pair_hold_and_are_reached(name):

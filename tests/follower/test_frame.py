@@ -237,7 +237,7 @@ def test_a_corner_held_still_to_the_shafts_least_rate():
 # --- the limit that the tolerance implies -----------------------------------------------------------------------------
 
 
-@pytest.mark.thin(2)
+@pytest.mark.thin(4)
 @pytest.mark.parametrize("tolerance", [1e-6, 1e-3])
 def test_the_limit_is_the_sensitivity_times_the_tolerance(pair, tolerance):
     mechanism, _ = pair
@@ -413,7 +413,7 @@ def moved_range(by, a, b):
     return wavy_range(a - by, b - by)
 
 
-@pytest.mark.thin(3)
+@pytest.mark.thin(6)
 @pytest.mark.parametrize("count", [1, 2, 3, 5, 8, 60])
 @pytest.mark.parametrize("band", [0.0, 0.3, 0.9, 1.5, 4.0])
 def test_runs_of_blocks_within_a_band_are_those_of_a_count_one_by_one(count, band):

@@ -192,6 +192,7 @@ def test_a_limit_below_the_true_error_and_above_the_samples_is_broken(tmp_path, 
     assert {check.name: check for check in verify(path, intent, 24, limits).checks}["motion"].ok
 
 
+@pytest.mark.slow
 def test_few_shaft_angles_give_the_same_error_as_many():
     follower = inch()
     contour = through(follower.envelope, 301)
@@ -210,6 +211,7 @@ def test_a_short_spike_between_the_samples_is_found():
     proved(motion, np.degrees(dense(follower, contour, 60_000)), 1.0)
 
 
+@pytest.mark.thin(2)
 @pytest.mark.parametrize(
     "intended",
     [

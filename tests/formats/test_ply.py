@@ -148,6 +148,7 @@ def test_planted_faults_are_caught(tmp_path):
         assert failures(binary(tmp_path / f"{name}.ply", corners), recipe, design) >= least, name
 
 
+@pytest.mark.thin(2)
 @pytest.mark.parametrize("form", ["text", "<f8", "<f4", ">f8"])
 def test_every_form_is_read(tmp_path: Path, form: str) -> None:
     path = tmp_path / "ring.ply"

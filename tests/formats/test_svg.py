@@ -258,6 +258,7 @@ def test_the_wrong_sense_of_turning_is_caught(tmp_path):
 # --- drawings of any origin -------------------------------------------------------------------------------------------
 
 
+@pytest.mark.thin(4)
 @pytest.mark.parametrize(
     "body",
     [

@@ -170,6 +170,7 @@ def test_a_stretch_drawn_backwards(tmp_path, cam):
     assert {"contour", "closed"} & failures(write_dxf(tmp_path / "cam.dxf", spoilt), intent)
 
 
+@pytest.mark.thin(2)
 def test_an_open_contour(tmp_path, cam):
     intent, points = cam
     path = write_dxf(tmp_path / "cam.dxf", points(EDGES)[:-5], closed=False)
@@ -239,6 +240,7 @@ def test_inches_meant_and_inches_drawn(tmp_path, cam):
     assert "units" in failures(write_dxf(tmp_path / "not.dxf", inch, bores=[(0, 0, 5 / 25.4)]), inches)
 
 
+@pytest.mark.slow
 @pytest.mark.thin(3)
 def test_everything_drawn_twice(tmp_path, cam):
     intent, points = cam
@@ -312,6 +314,7 @@ def test_openings_that_are_passed_over(tmp_path, cam, bore, faults):
     assert failures(write_dxf(tmp_path / "cam.dxf", points(EDGES), bores=bores), meant) == faults
 
 
+@pytest.mark.slow
 def test_an_angular_bore(tmp_path):
     """A square as large as the bore: right area at most, wrong everywhere."""
     intent, points = CAMS["yoke"]
@@ -348,6 +351,7 @@ def test_text_that_is_no_drawing(tmp_path, cam):
     assert failures(path, cam[0]) == {"readable"}
 
 
+@pytest.mark.thin(2)
 def test_an_empty_drawing(tmp_path, cam):
     document = ezdxf.new("R2010")
     document.saveas(tmp_path / "cam.dxf")
@@ -426,6 +430,7 @@ def stl(folder, points, **shape):
     return write_stl(folder / "cam.stl", triangles_of(points, **shape))
 
 
+@pytest.mark.thin(2)
 def test_a_solid_with_a_triangle_missing(tmp_path, cam):
     intent, points = cam
     found = failures(write_stl(tmp_path / "cam.stl", triangles_of(points(EDGES))[1:]), intent)
@@ -447,6 +452,7 @@ def test_a_solid_turned_inside_out(tmp_path, cam):
     assert "watertight" in failures(write_stl(tmp_path / "cam.stl", triangles_of(points(EDGES))[:, ::-1]), intent)
 
 
+@pytest.mark.thin(2)
 def test_a_solid_with_a_triangle_twice(tmp_path, cam):
     intent, points = cam
     triangles = triangles_of(points(EDGES))
@@ -454,6 +460,7 @@ def test_a_solid_with_a_triangle_twice(tmp_path, cam):
     assert "watertight" in failures(write_stl(tmp_path / "cam.stl", doubled), intent)
 
 
+@pytest.mark.thin(3)
 @pytest.mark.parametrize("lost", [1, 50, 10_000])
 def test_a_solid_cut_short(tmp_path, cam, lost):
     intent, points = cam
@@ -498,7 +505,7 @@ def test_a_solid_whose_top_differs_from_its_bottom(tmp_path, cam):
     assert "thickness" in failures(write_stl(tmp_path / "cam.stl", triangles), intent)
 
 
-@pytest.mark.thin(2)
+@pytest.mark.thin(4)
 def test_a_solid_without_its_bore(tmp_path, cam):
     intent, points = cam
     vertices = points(EDGES)

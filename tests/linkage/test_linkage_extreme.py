@@ -116,7 +116,7 @@ def test_transmission_angle_near_0(assembly, angle):
     hold([posed(rng, assembly, lambda theta4: angle - theta4 + rng.choice([0, math.pi])) for _ in range(8)])
 
 
-@pytest.mark.thin(12)
+@pytest.mark.thin(24)
 @pytest.mark.parametrize("assembly", few(ASSEMBLIES, 2))
 @pytest.mark.parametrize("power", range(3, 16))
 def test_discriminant_down_to_1e_15(assembly, power):

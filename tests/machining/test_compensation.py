@@ -161,6 +161,7 @@ def test_undercut_that_only_the_compensation_makes():
     assert [check["name"] for check in outcome.report["checks"] if not check["ok"]][-1] == "undercut-local"
 
 
+@pytest.mark.thin(2)
 @pytest.mark.parametrize(
     ("files", "cam", "message"),
     [

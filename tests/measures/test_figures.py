@@ -106,6 +106,7 @@ def test_d17_speed_of_the_roller() -> None:
 
 
 # needs: dynamics
+@pytest.mark.slow
 def test_d20_angle_at_which_a_guide_jams() -> None:
     train = TRAIN
     made = checks(disc("kind: roller, radius: 9", more=train + "\nlimits: {jam-margin: {at_least: 40}}\n"))
@@ -123,6 +124,7 @@ def test_d20_angle_at_which_a_guide_jams() -> None:
 D01 = "[{rise: 20, over: 120, law: cycloidal}, {dwell: 60}, {return: 20, over: 120, law: polynomial-345}, {dwell: 60}]"
 
 
+@pytest.mark.thin(2)
 @pytest.mark.parametrize(
     ("text", "area"),
     [
@@ -300,7 +302,7 @@ def test_a_failure_names_its_key() -> None:
 
 
 # needs: dynamics
-@pytest.mark.thin(2)
+@pytest.mark.thin(3)
 @pytest.mark.parametrize("rpm", [900.0, 37.5])
 def test_peaks_at_a_speed(rpm: float) -> None:
     names = [f"peak-{name}-at-speed" for name in ("velocity", "acceleration", "jerk")]

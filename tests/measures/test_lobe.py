@@ -47,6 +47,7 @@ def test_lobe_on_its_ramp() -> None:
     assert {k for joint in motion.joints for k, *_ in joint.jumps} == {3}  # where the ramp begins and is steady
 
 
+@pytest.mark.thin(3)
 @pytest.mark.parametrize("nose", [0.0, 30.0, 83.5, 90.0, 180.0, 340.0, 360.0])
 def test_nose_stands_where_it_is_asked_for(nose: float) -> None:
     motion, turned = (lobe(8.25, 66 * DEGREE, POWERS, ramp=RAMP, nose=angle * DEGREE) for angle in (0.0, nose))
@@ -55,6 +56,7 @@ def test_nose_stands_where_it_is_asked_for(nose: float) -> None:
     assert moved == pytest.approx(motion.derivatives(t, 2), abs=1e-10)
 
 
+@pytest.mark.thin(2)
 @pytest.mark.parametrize(
     ("begin", "return_law", "end", "opens"),
     [

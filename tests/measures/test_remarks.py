@@ -82,7 +82,7 @@ def test_a_sound_recipe_has_none(text: str) -> None:
     assert names(text) == []
 
 
-@pytest.mark.thin(7)
+@pytest.mark.thin(14)
 @pytest.mark.parametrize(
     ("text", "found"),
     [

@@ -21,6 +21,7 @@ from kin.law.sources.laws import named
 from kin.law.sources.programme import Dwell, Move, programme
 
 
+@pytest.mark.thin(3)
 @pytest.mark.parametrize(
     ("form", "head"),
     [

@@ -63,6 +63,7 @@ def coefficients(function: Callable[[Any], Any], places: np.ndarray, radius: flo
     return rows
 
 
+@pytest.mark.thin(4)
 @pytest.mark.parametrize("name", list(FUNCTIONS))
 def test_coefficients(name: str) -> None:
     function, known, at, radius = FUNCTIONS[name]

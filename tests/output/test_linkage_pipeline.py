@@ -93,6 +93,7 @@ def test_the_report_has_what_its_contract_names(exported: tuple[Path, dict]) -> 
     assert report["follower"] == "square frame"
 
 
+@pytest.mark.slow
 def test_the_paper_s_dwell_over_both_angles_and_from_the_file(exported: tuple[Path, dict]) -> None:
     # AS after Figure 9: approximately 45 degrees around 3 pi/2 of the relative angle
     dwells = exported[1]["linkage"]["dwells"]

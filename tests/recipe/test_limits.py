@@ -203,7 +203,7 @@ def test_limits_hold_and_fail_at_the_figure_itself(text: str, sign: float, sense
         assert not report_of(text, said)["ok"] if not ok else report_of(text, said)["ok"] or not alone
 
 
-@pytest.mark.thin(16)
+@pytest.mark.thin(32)
 @pytest.mark.parametrize("text", sorted(set(HAVE.values())))
 def test_limits_are_foreseen(text: str) -> None:
     recipe = loaded(text, wide(text))
@@ -851,6 +851,7 @@ def test_the_schema_knows_every_limit() -> None:
     assert json.loads(json.dumps(schema)) == schema
 
 
+@pytest.mark.thin(4)
 @pytest.mark.parametrize("kind", OF_CAMS)
 def test_each_starter_tells_of_limits(kind: str) -> None:
     assert re.search(r"^(# )?limits: .*# figures that must keep within bounds", starter(kind), re.MULTILINE)

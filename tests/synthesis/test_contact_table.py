@@ -62,7 +62,7 @@ def exported(text: str, folder: Path, files: str = FILES) -> dict[str, dict[str,
     return found
 
 
-@pytest.mark.thin(8)
+@pytest.mark.thin(16)
 @pytest.mark.parametrize("name", KINDS)
 def test_contacts_of_every_kind(name: str, tmp_path: Path) -> None:
     tables = exported(KINDS[name] + "verify: {angles: 720}\n", tmp_path)

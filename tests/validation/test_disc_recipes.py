@@ -209,6 +209,7 @@ def test_d04_flat_tilted():
     proved(recipe, design)
 
 
+@pytest.mark.slow
 def test_d05_knife_edge():
     motion = "[{rise: 25, over: 180, law: harmonic}, {return: 25, over: 180, law: harmonic}]"
     recipe, design = made(f"base_radius: 30, follower: {{kind: knife-edge}}, motion: {motion}")

@@ -555,6 +555,7 @@ PRESSED = FOUR_BAR.replace(
 UNEVEN = PRESSED.replace("[2.0e7, 2.0e7]", "[2.0e7, 6.0e7]")
 
 
+@pytest.mark.slow
 def test_faces_under_preload():
     """f06: the frame 0.02 mm narrower both ways, 20 kN/mm each: 200 N on all four; at 60 degrees as printed."""
     run = running(PRESSED, F06)
@@ -624,6 +625,7 @@ def test_files_of_a_preloaded_frame(tmp_path):
         assert "linkage-error" in failed
 
 
+@pytest.mark.slow
 def test_a_spring_beside_a_preloaded_frame():
     """It acts on the output, and so goes with the preload of the faces."""
     sprung = running(PRESSED, F06 + ", preload: 3").at(np.radians([60.0]))

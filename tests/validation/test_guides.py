@@ -121,7 +121,7 @@ PLANE = {
 }
 
 
-@pytest.mark.thin(2)
+@pytest.mark.thin(4)
 @pytest.mark.parametrize("name", PLANE)
 def test_equilibrium_in_the_plane(name):
     """Forces and moments on the stem, x outward along it; a second contact stands `apart` further back."""

@@ -83,7 +83,7 @@ def test_equation_20_loses_the_branch_beyond_90_degrees():
     assert four == pytest.approx(reference.output[0], abs=1e-10)
 
 
-@pytest.mark.thin(4)
+@pytest.mark.thin(8)
 @pytest.mark.parametrize("name", FOUR_BARS)
 def test_equation_21_holds_for_our_rates(name):
     s, s1, figure, (three, w3, _), (four, w4, _) = four_bar_parts(name)
@@ -93,7 +93,7 @@ def test_equation_21_holds_for_our_rates(name):
     assert apart(figure.rocker * w4 * np.cos(four), right) < 1e-8
 
 
-@pytest.mark.thin(2)
+@pytest.mark.thin(4)
 @pytest.mark.parametrize("name", FOUR_BARS)
 def test_equation_34_of_appendix_1(name):
     """Right, where its denominator is not 0: theta_3 = theta_4 there, or the coupler's line passes through B."""
@@ -171,7 +171,7 @@ def test_dead_centres_lie_where_y_vanishes():
     assert np.abs(off[:, None] - [0, 180, 360]).min() > 30  # not theta_3, nor theta_3 + 180 deg
 
 
-@pytest.mark.thin(10)
+@pytest.mark.thin(20)
 @pytest.mark.parametrize("name", [*FIGURES, *linkage_page.OURS])
 def test_no_dead_centre_is_where_the_paper_has_it(name):
     mechanism = Scene.of(name).mechanism

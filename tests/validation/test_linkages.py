@@ -131,7 +131,7 @@ def drawn(request):
     return Scene.of(request.param), FIGURES[request.param].loop(FINE)
 
 
-@pytest.mark.thin(6)
+@pytest.mark.thin(12)
 def test_positions_and_both_derivatives_over_the_relative_angle(drawn):
     scene, loop = drawn
     motion = scene.mechanism.at(FINE, 2)

@@ -146,6 +146,7 @@ def disagreement(name, stiffness, guide, rpm, load, *, mass=1.3, friction=None, 
 STIFF, LED = (4.0e7, 6.0e7), (40.0, 50.0, 0.1)
 
 
+@pytest.mark.thin(2)
 @pytest.mark.parametrize("name", SHAPES)
 def test_equilibrium_while_both_bear(name):
     worst, bearing = disagreement(name, STIFF, LED, 500.0, 50.0)
@@ -153,6 +154,7 @@ def test_equilibrium_while_both_bear(name):
     assert bearing == {(True, True)}
 
 
+@pytest.mark.thin(2)
 @pytest.mark.parametrize("name", SHAPES)
 def test_equilibrium_where_contacts_are_lost(name):
     worst, bearing = disagreement(name, STIFF, (25.0, 60.0, 0.2), 2500.0, 90.0, mass=3.0)

@@ -156,7 +156,7 @@ def test_equation_4_breadth_is_constant_at_every_angle_of_the_file(constant_brea
     assert np.abs(measured - breadth).max() <= 2 * made.recipe.export.tolerance
 
 
-@pytest.mark.thin(9)
+@pytest.mark.thin(18)
 def test_barbier_and_area(constant_breadth):
     made, (breadth, _, area) = constant_breadth
     e = made.recipe.export.tolerance

@@ -48,6 +48,7 @@ def test_the_corners_of_a_load_are_found() -> None:
     assert "sampled" not in check.detail
 
 
+@pytest.mark.thin(2)
 @pytest.mark.parametrize("count", few([22, 25, 37, 80], 2))
 def test_the_mean_force_on_a_roller_under_a_load_with_corners(count: int) -> None:
     """Against Gauss's rule between all corners and joints, with the lever and the roller's turns of the same state."""
@@ -66,6 +67,7 @@ def test_the_mean_force_on_a_roller_under_a_load_with_corners(count: int) -> Non
     assert own[0] == pytest.approx(mean, rel=1e-10)
 
 
+@pytest.mark.thin(2)
 @pytest.mark.parametrize("width", [1e-3, 1e-6])
 def test_no_narrow_feature_is_passed_over(width: float) -> None:
     found = extremes_of(running(f"30*exp(-((t - 1.2345)/{width})**2)"))

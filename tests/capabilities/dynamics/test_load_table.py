@@ -59,6 +59,7 @@ def test_a_load_is_straight_between_its_rows_and_on_to_the_next_turn(tmp_path: P
     assert load(at) == pytest.approx([0.0, 50.0, 100.0, 175.0, 125.0, -20.0, -20.0, -40.0 / 90.0, 50.0], abs=1e-10)
 
 
+@pytest.mark.thin(2)
 @pytest.mark.parametrize(
     ("rows", "more"),
     [
@@ -217,7 +218,7 @@ dynamics: {mass: 0.01, rpm: 60, preload: 80, load: {table: load.csv}}
         read(text.encode(), tmp_path / "case.yaml")
 
 
-@pytest.mark.thin(2)
+@pytest.mark.thin(4)
 @pytest.mark.parametrize(
     ("rows", "more", "factor"),
     [

@@ -259,6 +259,7 @@ def test_a_lobe_is_as_wide_as_on_its_shaft(tmp_path: Path) -> None:
     assert list(values.values()) == pytest.approx([644.4371 * math.sqrt(10.0 / long) for long in (5.0, 20.0)], rel=1e-5)
 
 
+@pytest.mark.thin(3)
 @pytest.mark.parametrize(
     ("stated", "mega"),
     [

@@ -291,6 +291,7 @@ def test_on_a_made_part_float_is_judged_while_the_valve_is_open(tmp_path: Path) 
     assert [row["intended"], row["made"]] == pytest.approx([intended["min"]] * 2, rel=0.01)  # not the dwell's 0
 
 
+@pytest.mark.thin(2)
 @pytest.mark.parametrize("carrier", ["valve", "tappet"])
 def test_a_valve_moves_with_its_mass_and_its_spring_each_without_the_other(carrier: str) -> None:
     """While it is open the mass of the valve counts 1.6 squared times, whatever carries the spring."""

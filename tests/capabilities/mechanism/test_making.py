@@ -261,6 +261,7 @@ def test_the_pair_of_faces_stands_off_by_half_the_clearance() -> None:
         assert np.abs(off).min() == pytest.approx(assembly.sizes.gap_each_side)
 
 
+@pytest.mark.slow
 def test_rollers_are_exactly_as_intended_and_turn_on_their_pins() -> None:
     assembly = made("double roller")[2]
     for side in ("a", "b"):
@@ -315,6 +316,7 @@ def test_a_stem_runs_on_its_own_line_between_its_guides_blocks() -> None:
     assert gaps == pytest.approx([0.5 * (s.bar + s.clearance)] * 2)
 
 
+@pytest.mark.slow
 def test_over_a_pivot_within_the_disc_the_cam_holds_the_arm() -> None:
     _, _, assembly = made("pivot within")
     assert "retainer-pivot" not in {member.name for member in assembly.members}
@@ -323,6 +325,7 @@ def test_over_a_pivot_within_the_disc_the_cam_holds_the_arm() -> None:
     assert "keeps the arm on its pin" in assembly.remarks[0]
 
 
+@pytest.mark.thin(2)
 @pytest.mark.parametrize(
     ("bore", "more", "area"),
     [
@@ -345,6 +348,7 @@ def test_the_shaft_fits_the_bore(bore: str, more: str, area: float) -> None:
     assert inner == pytest.approx(journal - 0.05)
 
 
+@pytest.mark.thin(2)
 @pytest.mark.parametrize("more", ["flat: {across: 7}", "keyway: {width: 2, depth: 1, at: 90}"])
 def test_the_shaft_of_a_flat_or_a_key_keeps_the_clearance_all_round(more: str) -> None:
     assembly = build(SHAPES["yoke"] + PART.replace("bore: 8", f"bore: 8, {more}"))[2]

@@ -78,6 +78,7 @@ def test_a_sound_chunk_of_another_place_is_noticed(mine: tuple[str, int, int]) -
         decode(encode("key", 0, 3, {"a": np.arange(3.0)}), *mine)
 
 
+@pytest.mark.thin(3)
 @pytest.mark.parametrize("fault", ["torn", "empty", "changed", "planted", "foreign", "gone"])
 def test_a_spoilt_chunk_is_computed_again_and_no_other(filled: Chunks, tmp_path: Path, fault: str) -> None:
     sound = {path.name: path.read_bytes() for path in filled.folder.iterdir()}

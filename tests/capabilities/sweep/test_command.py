@@ -192,6 +192,7 @@ def test_a_users_file_in_the_way_exits_3_and_stays(tmp_path: Path, capsys: pytes
     assert not (folder / "sweep.json").exists()
 
 
+@pytest.mark.thin(2)
 @pytest.mark.parametrize(
     ("package", "extra", "change", "options"),
     [

@@ -109,6 +109,7 @@ def test_listed_values_stay():
     assert polish(alone, {"linkage.rocker": 105.0})[0] == {"linkage.rocker": 105.0}
 
 
+@pytest.mark.slow
 def test_where_there_is_nothing_to_gain_the_start_stays():
     # the cam's least radius of curvature does not depend on where its shaft is
     asked = task(rank="radius-of-curvature", vary="'cam.shaft[0]': {from: -20, to: 20}")

@@ -240,6 +240,7 @@ def test_files_tell_words(tmp_path):
     assert not made.uses
 
 
+@pytest.mark.slow
 def test_words_of_a_linkage():
     text = "cam: {kind: support, p: 25 + sin(3*t), shaft: [12, 6]}\ndwell: {band: 0.1}\n"
     text += "linkage: {kind: four-bar, ground: 80, coupler: 70, rocker: 105, assembly: open}\n"

@@ -98,6 +98,7 @@ def test_alike_necks_are_all_found():
     assert [n.second for n in necks] == pytest.approx([2 * math.pi - float(at), math.pi + float(at)], abs=1e-8)
 
 
+@pytest.mark.slow
 @given(
     st.lists(st.tuples(st.integers(2, 7), st.floats(-4.0, 4.0), st.floats(0.0, 6.28)), min_size=1, max_size=3),
     st.floats(1.0, 25.0),

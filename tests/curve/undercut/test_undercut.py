@@ -219,6 +219,7 @@ def test_the_neck_of_booths_lemniscate(excess):
         assert 0.0 <= u.depth < excess * waist
 
 
+@pytest.mark.slow
 def test_contact_lost_at_a_neck_of_a_lemniscate():
     # symmetric: a position is lost where the contour has crossed the y axis
     shape = booth(60.0, 60.0 * math.sqrt(0.9))
@@ -229,7 +230,7 @@ def test_contact_lost_at_a_neck_of_a_lemniscate():
     assert corners[1] == pytest.approx(corners[2], abs=1e-12)
 
 
-@pytest.mark.thin(2)
+@pytest.mark.thin(4)
 @pytest.mark.parametrize("e", [14.0, 16.0, 18.0])
 def test_a_neck_off_the_axis_of_symmetry(e):
     found = undercuts(roller(PEAR, e))
@@ -302,6 +303,7 @@ def test_necks_wider_than_the_sharpest_place_count_for_nothing_where_that_is_und
     assert found.necks == ()
 
 
+@pytest.mark.slow
 def test_parts_of_a_turn_that_are_alike_are_undercut_alike():
     """A motion that repeats three times: each part has the same stretch, a third of a turn on."""
     segments = "[{rise: 9, over: 30, law: cycloidal}, {return: 9, over: 30, law: cycloidal}, {dwell: 60}]"

@@ -76,7 +76,7 @@ def joined(head: list[str], columns: dict[str, Any]) -> Any:
 RATES = (("velocity", "SlaveVelo"), ("acceleration", "SlaveAcc"))
 
 
-@pytest.mark.thin(4)
+@pytest.mark.thin(8)
 @pytest.mark.parametrize("cam", CAMS)
 @pytest.mark.parametrize("controller", [name for name in CONTROLLERS if name != "sew"])
 def test_a_drive_is_within_what_its_table_says(cam: str, controller: str, tmp_path: Path) -> None:
@@ -142,6 +142,7 @@ def test_a_curve_point_table_has_its_number_of_rows_and_holds_its_tolerance(cam:
         assert main(["verify", str(path), str(other), *tolerance]) == 1
 
 
+@pytest.mark.thin(2)
 @pytest.mark.parametrize(
     ("old", "new", "told"),
     [

@@ -94,6 +94,7 @@ def test_a_card_of_a_member_is_met_with_no_greater_peak(powers, half, lift, coun
     assert peak(motion, mixture.side.half) <= peak(single, math.radians(half)) * (1.0 + 2e-3)
 
 
+@pytest.mark.thin(2)
 @pytest.mark.parametrize(("count", "least"), [(2, 33.2931), (3, 34.6983)])
 def test_the_search_goes_on_where_the_peak_bends_down_towards_its_valley(count, least):
     """The least peaks are scipy's, over angles of about 75.015 and 74.723 degrees, bounded at 700 places."""

@@ -38,6 +38,7 @@ PLATE = programme(
 )
 
 
+@pytest.mark.thin(2)
 @pytest.mark.parametrize("closing", [False, True])
 def test_angles_may_pass_360_once(closing):
     """Rows from 200 to 358 and on from 0, as a machine counts within the turn, are those from -160 on."""
@@ -187,6 +188,7 @@ def equally_spaced(s, by=0.0):
     return Samples(np.arange(len(s)) * (TURN / len(s)), np.array(s) + by, np.arange(len(s)) + 1)
 
 
+@pytest.mark.thin(2)
 @pytest.mark.parametrize(
     ("s", "reading", "square", "least"), [(EVERY_10, 0.02, 719.888, 0.02934), (EVERY_15, 0.005, 762.118, 0.010858)]
 )
@@ -242,6 +244,7 @@ def test_rows_far_from_0_are_remarked_with_the_level_by_which_they_are_lowered()
     assert (level.range, level.kept.distance) == ((0.0, 0.0), 5.0)
 
 
+@pytest.mark.thin(3)
 @pytest.mark.parametrize("level", [25.0, -25.0, 0.0])
 @pytest.mark.parametrize("around", [1, -1])
 def test_the_distance_of_the_shape_is_that_of_rows_lowered_as_a_whole(level, around):
@@ -327,6 +330,7 @@ def test_a_dwell_at_the_last_level_fills_the_rest_of_a_turn():
     assert math.degrees(motion.rests[-1].end) == pytest.approx(360, abs=1.5)
 
 
+@pytest.mark.slow
 def test_a_sharp_end_of_the_rows_before_a_filled_rest_is_no_row_that_stands_out():
     """The rows that fill the rest have no line; a motion that does not end level has a corner there, and no bad row."""
     theta = np.radians(np.arange(60.0, 181.0, 2.0))
@@ -401,7 +405,7 @@ def test_what_is_no_motion_is_refused_with_its_line(change, line, message):
     assert caught.value.message.startswith(f"line {line}: ")
 
 
-@pytest.mark.thin(2)
+@pytest.mark.thin(4)
 @pytest.mark.parametrize(("unit", "word"), [(1.0, "mm"), (25.4, "in"), (0.0254, "in"), (rad(1), "deg")])
 def test_the_reading_that_is_advised_lets_a_table_close(unit, word):
     rows = broken(climbing)._replace(unit=unit)
@@ -510,6 +514,7 @@ def test_rows_that_scatter_too_far_to_be_followed_are_refused_with_a_reading_tha
     from_table(rows.part(slice(None, None, 11 if around != 1 else 12)), 0.0005, around=around, suspect="keep")
 
 
+@pytest.mark.slow
 @pytest.mark.usefixtures("short_search")
 def test_rows_about_no_curve_are_refused_and_means_of_them_are_a_motion():
     rows = plate(3000)._replace(s=np.random.default_rng(5).uniform(0, 10, 3000))
@@ -537,6 +542,7 @@ def test_angles_that_are_hardly_degrees_are_remarked_with_what_they_may_be(end, 
     assert [f"give angle: {word}" in remark.sentence for remark in names] == [True]
 
 
+@pytest.mark.slow
 def test_angles_over_less_than_a_quarter_of_the_turn_are_remarked():
     theta = np.radians(np.arange(0.0, 73.0, 3.0))
     rows = Samples(theta, np.round(3 - 3 * np.cos(5 * theta), 3), np.arange(25) + 1)

@@ -43,7 +43,7 @@ def test_the_corpus_has_every_law_step_unit_and_number_of_decimals():
     assert len({(table.step, table.places) for table in EVERY}) == 36
 
 
-@pytest.mark.thin(8)
+@pytest.mark.thin(16)
 @pytest.mark.parametrize("table", thin(EVERY, DIAGONAL), ids=str)
 def test_a_law_is_followed_within_its_digits(table):
     motion = from_table(table.rows, table.reading).demand_joined()

@@ -93,6 +93,7 @@ def failures(path, intent=YOKE, limits=LIMITS):
 # --- rewritten: nothing fails ----------------------------------------------------------------------------------------
 
 
+@pytest.mark.thin(2)
 @pytest.mark.parametrize("name", POINTS)
 def test_own_triangles_are_a_prism_to_the_bit(tmp_path, name):
     path = write_stl(tmp_path / "cam.stl", triangles_of(name))
@@ -102,6 +103,7 @@ def test_own_triangles_are_a_prism_to_the_bit(tmp_path, name):
     assert not failures(path, INTENTS[name])
 
 
+@pytest.mark.thin(2)
 @pytest.mark.parametrize("name", POINTS)
 def test_tilted_in_single_precision_and_back(tmp_path, name):
     triangles = tilted_and_back(triangles_of(name), single)
@@ -117,6 +119,7 @@ def test_tilted_in_single_precision_and_back(tmp_path, name):
     assert not failures(path, INTENTS[name])
 
 
+@pytest.mark.thin(2)
 @pytest.mark.parametrize("middle", [3.0, THICK / 2.0])
 def test_walls_with_corners_halfway_up(tmp_path, middle):
     """As remeshing leaves them, also where the part is cut to see its section."""

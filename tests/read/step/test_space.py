@@ -121,7 +121,7 @@ REFUSED = {
 UNIT = "#910=(LENGTH_UNIT()NAMED_UNIT(*)SI_UNIT($,.METRE.));"
 
 
-@pytest.mark.thin(2)
+@pytest.mark.thin(4)
 @kernel
 @pytest.mark.parametrize("name", READ)
 def test_a_placement_is_read_as_the_kernel_does(tmp_path, name):

@@ -41,6 +41,7 @@ def changed(text, pattern, replacement, count=1):
 # --- sound files ----------------------------------------------------------------------------------------------------
 
 
+@pytest.mark.thin(3)
 @pytest.mark.parametrize("unit", ["mm", "m", "inch"])
 @pytest.mark.parametrize("seam", [True, False])
 def test_round_walls_with_a_seam_or_without_in_any_unit(tmp_path, unit, seam):
@@ -142,6 +143,7 @@ def test_a_file_cut_short(tmp_path, bytes_left):
     assert refused(tmp_path, washer()[:bytes_left]).reason in {"empty", "truncated", "syntax"}
 
 
+@pytest.mark.thin(4)
 @pytest.mark.parametrize(
     ("pattern", "replacement", "reason", "message"),
     [

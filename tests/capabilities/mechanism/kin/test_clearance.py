@@ -65,7 +65,7 @@ def test_disc_turning_about_its_own_centre_costs_no_search():
     assert found.evaluations <= 128
 
 
-@pytest.mark.thin(2)
+@pytest.mark.thin(4)
 @pytest.mark.parametrize(("radius", "least"), [(8.0, -1.0), (7.0, 0.0), (6.999, 0.001)])
 def test_touching_and_overlapping(radius, least):
     found = only(mover("disc", disc(3, 0, radius), Turning(-2.0)), mover("wall", WALL, Still()))
@@ -107,6 +107,7 @@ def test_bars_that_turn_against_each_other():
     assert clashing.least < -0.4
 
 
+@pytest.mark.slow
 def test_pin_inside_a_hole_keeps_from_its_edge_only():
     plate = mover("plate", box(-20, -20, 20, 20), Still(), [disc(0.3, 0, 2.5)])
     found = only(mover("pin", disc(0, 0, 2), Turning(3.0)), plate)
