@@ -6,9 +6,9 @@ Holds: camgeo.cams.family, camgeo.cams.follower.
 import json
 import math
 
-import ezdxf
 import numpy as np
 import pytest
+from support.heavy import ezdxf
 from support.intent import findings
 from support.kernel import kernel
 

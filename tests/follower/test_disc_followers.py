@@ -2,13 +2,13 @@
 
 import numpy as np
 import pytest
-import shapely
 from support import followers
 from support.brute_disc import peak
 from support.camfiles import arcs_through
 from support.cases import few
 from support.disc_followers import FOLLOWERS, contour, fitted, on_arm, on_stem
 from support.discs import M02, M07, M15, displaced
+from support.heavy import shapely
 
 from camgeo.curve.backwards import least_hollow
 from camgeo.curve.curvature import least_radius

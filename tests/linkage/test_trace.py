@@ -4,7 +4,7 @@ import math
 
 import numpy as np
 import pytest
-import shapely
+from support.heavy import shapely
 
 from kin.law.formula.formula import Formula
 from kin.law.from_formula import lift_from_formula

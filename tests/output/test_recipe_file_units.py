@@ -13,11 +13,11 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 from zipfile import ZipFile
 
-import ezdxf
 import numpy as np
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
+from support.heavy import ezdxf
 from support.kernel import kernel
 
 from camgeo.cli.main import main

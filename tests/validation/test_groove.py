@@ -7,10 +7,10 @@ import math
 import re
 from pathlib import Path
 
-import ezdxf
 import numpy as np
 import pytest
 from support import brute_disc
+from support.heavy import ezdxf
 from support.kernel import kernel
 
 from camgeo.output.pipeline import export, judge_files
