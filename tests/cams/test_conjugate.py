@@ -182,7 +182,6 @@ def test_a_stem_with_its_offset_given_is_sized_by_both_discs() -> None:
 
 
 @pytest.mark.slow
-@pytest.mark.thin(2)
 @pytest.mark.parametrize("side", ["trailing", "leading"])
 def test_a_bell_crank_is_sized_by_both_discs(side: str) -> None:
     """No pivot near the one that was found keeps the limits on both discs with a smaller base radius."""

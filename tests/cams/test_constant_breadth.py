@@ -97,7 +97,6 @@ def test_every_format_holds_its_corners(text, tmp_path):
 
 @pytest.mark.slow
 @kernel
-@pytest.mark.thin(2)
 @pytest.mark.parametrize("text", SHARP.values(), ids=SHARP)
 def test_step_holds_its_corners(text, tmp_path):
     body = "part: {thickness: 8, bore: 8}\nexport: {tolerance: 0.001, files: [step]}\n"

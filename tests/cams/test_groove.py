@@ -61,7 +61,6 @@ SIZED = {
 
 
 @pytest.mark.slow
-@pytest.mark.thin(2)
 @pytest.mark.parametrize("name", SIZED)
 def test_a_size_obeys_both_flanks(name):
     """Least radii of the metal from 3600 points: the path bends outward at the inner flank, inward at the outer one."""

@@ -64,7 +64,6 @@ def test_a_full_standard_error_changes_no_status(call: list[str]) -> None:
 
 
 @pytest.mark.slow
-@pytest.mark.thin(12)
 @FULL
 @pytest.mark.parametrize("buffered", [True, False])
 @pytest.mark.parametrize("call", [["schema"], ["--help"], ["new"], ["--version"], ["laws"]])

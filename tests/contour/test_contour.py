@@ -492,7 +492,6 @@ def test_arcs_along_curves_with_inflections_cusps_and_vanishing_derivatives(cont
 
 
 @pytest.mark.slow
-@pytest.mark.thin(2)
 @pytest.mark.parametrize("size", [2e-5, 2e4])
 def test_arcs_along_a_spline_are_as_close_on_a_cam_of_a_micrometre(size: float) -> None:
     contour = rose(size)

@@ -97,7 +97,6 @@ def below_the_noise():
 
 
 @pytest.mark.slow
-@pytest.mark.thin(16)
 @pytest.mark.parametrize("name", names(cases(), SLOW))
 def test_it_holds_and_the_page_shows_it(name):
     shown_as_measured(__name__, name)

@@ -97,7 +97,6 @@ def recipe(touching, base, rows, motion_error=None):
 
 
 @pytest.mark.slow
-@pytest.mark.thin(20)
 @pytest.mark.parametrize("name", PASSING)
 def test_it_passes(name: str, tmp_path: Path) -> None:
     touching, base, rows = PASSING[name]

@@ -113,7 +113,6 @@ def tightest(form, tolerance):
 
 
 @pytest.mark.slow
-@pytest.mark.thin(20)
 @pytest.mark.parametrize("name", names(cases(), SLOW))
 def test_it_holds_and_the_page_shows_it(name):
     shown_as_measured(__name__, name)

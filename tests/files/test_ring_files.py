@@ -79,7 +79,6 @@ def test_solids_have_the_volume_of_the_ring(tmp_path):
 
 
 @pytest.mark.slow
-@pytest.mark.thin(2)
 @pytest.mark.parametrize("form", ["arcs", "spline"])
 def test_a_step_file_has_the_volume_of_the_ring(tmp_path, form):
     pytest.importorskip("OCP")

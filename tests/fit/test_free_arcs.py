@@ -116,7 +116,6 @@ def distance(curve: Curve, points: np.ndarray) -> np.ndarray:
 
 
 @pytest.mark.slow
-@pytest.mark.thin(10)
 @pytest.mark.parametrize("tolerance", few(TOLERANCES, 3))
 def test_few_proved_and_smooth(curve: Curve, tolerance: float) -> None:
     arcs = fit_arcs(curve, tolerance)

@@ -24,7 +24,6 @@ RECIPES = Path(__file__).parents[2] / "recipes"
 
 
 @pytest.mark.slow
-@pytest.mark.thin(2)
 @pytest.mark.parametrize(("recipe", "tolerance", "most"), [("w-figure-9", 1e-8, 8), ("as-figure-2a", 1e-9, 4)])
 def test_edges_and_rounds_are_few_where_rounding_shows(
     recipe: str, tolerance: float, most: int, monkeypatch: pytest.MonkeyPatch

@@ -109,7 +109,6 @@ def test_no_span_of_a_right_length_does_better() -> None:
 
 
 @pytest.mark.slow
-@pytest.mark.thin(6)
 @pytest.mark.parametrize("name", few(CONTOURS, 4))
 def test_shipped_contours_are_within_a_fifth_of_the_least_count(name: str) -> None:
     contour = designed(load(RECIPES / f"{name}.yaml")).only_surface.contour
@@ -187,7 +186,6 @@ def test_the_spline_is_smooth_in_its_own_parameter(name: str) -> None:
 
 
 @pytest.mark.slow
-@pytest.mark.thin(3)
 @pytest.mark.parametrize("name", few(["as-figure-2b", "reuleaux", "shu-wu", "w-booth"], 4))
 @pytest.mark.parametrize("times", [1.0, 2.0, 20.0])
 def test_any_tolerance_above_the_floor_is_held_after_a_few_attempts(

@@ -280,7 +280,6 @@ def test_a_pivot_inside_the_disc_and_an_arm_stretched_out(side):
 
 
 @pytest.mark.slow
-@pytest.mark.thin(2)
 @pytest.mark.parametrize("gap", [1e-3, 1e-9])
 def test_a_roller_a_hair_above_undercut(gap):
     shape = CentreShape(M15, Stem.on(26.0))
@@ -301,7 +300,6 @@ def proved(follower, made, tolerance):
 
 
 @pytest.mark.slow
-@pytest.mark.thin(4)
 @pytest.mark.parametrize("width", [1.0, 0.1, 0.01])
 def test_a_rise_of_a_hundredth_of_a_degree_is_measured_as_any_other(width):
     """A wall almost along the line of travel: contact is found everywhere, limit and deviation are still right."""

@@ -85,7 +85,6 @@ def test_excess_over_a_flat_face_is_the_greatest_reach_beyond_it(name, spread):
 
 
 @pytest.mark.slow
-@pytest.mark.thin(6)
 @pytest.mark.parametrize("name", PITCHES)
 @pytest.mark.parametrize("spread", [1e-3, 2.0])
 def test_excess_over_a_roller_is_its_radius_less_the_distance_to_the_pitch_curve(name, spread):
@@ -130,7 +129,6 @@ def test_barbier_and_reuleaux_in_closed_form():
 
 
 @pytest.mark.slow
-@pytest.mark.thin(2)
 @pytest.mark.parametrize("name", [n for n in PITCHES if n != "undercut"])
 def test_area_and_perimeter_of_a_roller_envelope(name):
     transmission, radius = PITCHES[name]

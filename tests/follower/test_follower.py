@@ -229,7 +229,6 @@ PAIRS = {
 
 
 @pytest.mark.slow
-@pytest.mark.thin(9)
 @pytest.mark.parametrize("name", PAIRS)
 @pytest.mark.parametrize("count", [9, 100, 2000])
 def test_swings_of_a_pair_on_a_polygon_by_hand(name, count):
@@ -416,7 +415,6 @@ def test_limits_hold_and_are_reached_by_the_parallel_contours(name):
 
 
 @pytest.mark.slow
-@pytest.mark.thin(4)
 @pytest.mark.parametrize("name", PAIRS)
 def test_limits_of_a_pair_hold_and_are_reached(name):
     e = 0.05

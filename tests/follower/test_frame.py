@@ -80,7 +80,6 @@ def laid(mechanism, vertices, rest=WAYS[0]):
 
 
 @pytest.mark.slow
-@pytest.mark.thin(12)
 def test_outputs_by_vertices(pair):
     """In every way of resting, at given shaft angles: the same output as of the turned vertices in a rigid frame."""
     mechanism, bench = pair
@@ -92,7 +91,6 @@ def test_outputs_by_vertices(pair):
 
 
 @pytest.mark.slow
-@pytest.mark.thin(12)
 def test_the_verdict_by_vertices(pair):
     """Greatest error, rms, increment and play: nothing that dense sampling finds is missed, and nothing made up."""
     mechanism, bench = pair
@@ -150,7 +148,6 @@ def test_a_linkage_of_a_micrometre_and_of_a_kilometre(size):
 
 
 @pytest.mark.slow
-@pytest.mark.thin(2)
 @pytest.mark.parametrize("offset", [-0.01, 0.004])
 def test_play_of_a_cam_that_is_smaller_or_larger_all_round(offset):
     vertices, bulges = arcs_through(cam(6000, 25.0 + offset))
@@ -378,7 +375,6 @@ def wavy_range(a, b):
 
 
 @pytest.mark.slow
-@pytest.mark.thin(4)
 @pytest.mark.parametrize("band", few([0.02, 0.2, 1.0, 3.0], 2))
 @pytest.mark.parametrize("count", [60, 3000])
 def test_the_longest_dwell_wherever_it_starts(band, count):

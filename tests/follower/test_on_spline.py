@@ -130,7 +130,6 @@ OTHERS = {
 
 
 @pytest.mark.slow
-@pytest.mark.thin(3)
 @pytest.mark.parametrize("name", few(OTHERS, 6))
 def test_splines_and_the_arcs_in_their_place_agree(name: str, monkeypatch: pytest.MonkeyPatch) -> None:
     follower = OTHERS[name]
@@ -155,7 +154,6 @@ def test_splines_and_the_arcs_in_their_place_agree(name: str, monkeypatch: pytes
 
 
 @pytest.mark.slow
-@pytest.mark.thin(2)
 @pytest.mark.parametrize("corner", [1e-3, -1e-3])
 def test_a_spline_with_a_corner_is_followed_by_arcs_and_proved(corner: float, monkeypatch: pytest.MonkeyPatch) -> None:
     contour = closed(ROLLER, 60, corner)

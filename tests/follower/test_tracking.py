@@ -89,7 +89,6 @@ GUIDES: dict[str, tuple[Any, float, float]] = {
 
 
 @pytest.mark.slow
-@pytest.mark.thin(8)
 @pytest.mark.parametrize("count", few([60, 140]))
 @pytest.mark.parametrize("name", GUIDES)
 def test_single_rollers_on_polygons_against_bisected_distances(name, count):
@@ -349,7 +348,6 @@ def test_what_is_not_proved_is_looked_at_closely(monkeypatch):
 
 
 @pytest.mark.slow
-@pytest.mark.thin(2)
 @pytest.mark.parametrize("scale", [1.0 - 4e-4, 1.0 + 4e-4])
 def test_a_dent_or_spike_in_a_very_fine_polygon_is_not_lost_between_samples(scale):
     follower = inch()

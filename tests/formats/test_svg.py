@@ -230,7 +230,6 @@ def test_what_stands_on_no_layer_is_cut_too(tmp_path):
 
 
 @pytest.mark.slow
-@pytest.mark.costly("a verdict for each arc")
 def test_a_flipped_flag_is_caught_on_every_arc(tmp_path):
     recipe, design, path, _, _ = made(tmp_path, part="{bore: 12}")
     text = path.read_text()

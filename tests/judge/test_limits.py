@@ -96,7 +96,6 @@ def test_a_double_roller_that_is_steep_but_bounded_is_held_as_before(tmp_path: P
 
 
 @pytest.mark.slow
-@pytest.mark.thin(4)
 @pytest.mark.parametrize(
     ("share", "fails", "remarked"),
     [(1.01 * MOST_SHARE, True, False), (0.99 * MOST_SHARE, False, True), (0.99 * LOOSE, False, False)],

@@ -150,7 +150,6 @@ MISTAKEN = {
 
 
 @pytest.mark.slow
-@pytest.mark.thin(24)
 @pytest.mark.parametrize("fault", MISTAKEN)
 def test_a_cam_of_another_follower_is_caught(tmp_path, fault):
     name, meant = MISTAKEN[fault]

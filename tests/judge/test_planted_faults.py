@@ -107,7 +107,6 @@ def test_a_sound_file_passes_every_check(tmp_path, cam, form):
 
 
 @pytest.mark.slow
-@pytest.mark.thin(6)
 @pytest.mark.parametrize("depth", [0.02, -0.02])
 @pytest.mark.parametrize("k", [0, EDGES - 1])
 def test_a_vertex_moved(tmp_path, cam, depth, k):
@@ -121,7 +120,6 @@ def test_a_vertex_moved(tmp_path, cam, depth, k):
 
 
 @pytest.mark.slow
-@pytest.mark.thin(3)
 def test_a_vertex_moved_along_the_contour_until_it_turns_back(tmp_path, cam):
     intent, points = cam
     spoilt = points(EDGES)
@@ -162,7 +160,6 @@ def test_a_reversed_segment(tmp_path, cam):
 
 
 @pytest.mark.slow
-@pytest.mark.thin(3)
 def test_a_stretch_drawn_backwards(tmp_path, cam):
     intent, points = cam
     spoilt = points(EDGES)
@@ -185,7 +182,6 @@ def test_a_contour_that_is_closed_by_a_chord(tmp_path, cam):
 
 
 @pytest.mark.slow
-@pytest.mark.thin(6)
 @pytest.mark.parametrize("scale", [1.001, 0.999])
 def test_scale(tmp_path, cam, scale):
     intent, points = cam
@@ -200,7 +196,6 @@ def test_a_turn(tmp_path, cam, degrees):
 
 
 @pytest.mark.slow
-@pytest.mark.thin(6)
 @pytest.mark.parametrize("shift", [(0.01, 0.0), (0.0, -0.01)])
 def test_a_shift(tmp_path, cam, shift):
     intent, points = cam
@@ -228,7 +223,6 @@ def test_no_units(tmp_path, cam):
 
 
 @pytest.mark.slow
-@pytest.mark.thin(3)
 def test_inches_meant_and_inches_drawn(tmp_path, cam):
     intent, points = cam
     inches = part_of(gauge_of(intent), mm=25.4, bore=10.0)
@@ -241,7 +235,6 @@ def test_inches_meant_and_inches_drawn(tmp_path, cam):
 
 
 @pytest.mark.slow
-@pytest.mark.thin(3)
 def test_everything_drawn_twice(tmp_path, cam):
     intent, points = cam
     assert "closed" in failures(write_dxf(tmp_path / "cam.dxf", points(EDGES), twice=True), intent)
@@ -267,7 +260,6 @@ def test_a_segment_of_no_length(tmp_path, cam):
 
 
 @pytest.mark.slow
-@pytest.mark.thin(3)
 def test_a_mirrored_cam(tmp_path, cam):
     intent, points = cam
     mirrored = points(EDGES) * [1.0, -1.0]
@@ -406,7 +398,6 @@ def test_two_contours_each_within_the_tolerance_can_jam_a_yoke(tmp_path):
 
 
 @pytest.mark.slow
-@pytest.mark.thin(3)
 def test_a_motion_limit_of_the_callers_own(tmp_path, cam):
     intent, points = cam
     path = write_dxf(tmp_path / "cam.dxf", points(EDGES))
@@ -470,7 +461,6 @@ def test_a_solid_cut_short(tmp_path, cam, lost):
 
 
 @pytest.mark.slow
-@pytest.mark.thin(3)
 def test_a_solid_moved(tmp_path, cam):
     intent, points = cam
     aside = write_stl(tmp_path / "aside.stl", moved(triangles_of(points(EDGES)), 0.02, 0.0))
@@ -486,7 +476,6 @@ def test_a_solid_too_thick(tmp_path, cam):
 
 
 @pytest.mark.slow
-@pytest.mark.thin(3)
 def test_a_solid_in_inches(tmp_path, cam):
     intent, points = cam
     path = write_stl(tmp_path / "cam.stl", triangles_of(points(EDGES)) / 25.4)

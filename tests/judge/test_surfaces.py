@@ -191,7 +191,6 @@ def test_planted_faults_are_caught(tmp_path, fault, caught):
 
 
 @pytest.mark.slow
-@pytest.mark.thin(4)
 @pytest.mark.parametrize("by", [0.9, 1.1])
 @pytest.mark.parametrize("sign", [-1.0, 1.0])
 def test_the_closure_has_two_sides(tmp_path, by, sign):

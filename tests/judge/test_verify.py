@@ -216,7 +216,6 @@ def test_a_trimmed_undercut_of_a_yoke(tmp_path):
 
 
 @pytest.mark.slow
-@pytest.mark.thin(2)
 @pytest.mark.parametrize("fault", [0.02, -0.02])
 def test_a_fault_on_a_trimmed_contour(tmp_path, fault):
     lift = lift_hypocycloid(3, 4.0, 50.0)

@@ -90,7 +90,6 @@ def posed(rng, assembly, frame_of):
 
 
 @pytest.mark.slow
-@pytest.mark.thin(6)
 @pytest.mark.parametrize("assembly", ASSEMBLIES)
 @pytest.mark.parametrize("beside", [0.0, 1e-15, -1e-12, 1e-8])
 def test_dead_centres(assembly, beside):
@@ -167,7 +166,6 @@ def test_links_from_a_millionth_to_a_million_breadths(assembly):
 
 
 @pytest.mark.slow
-@pytest.mark.thin(6)
 @pytest.mark.parametrize("assembly", ASSEMBLIES)
 @pytest.mark.parametrize("power", [-6.0, -9.0, -15.0, -300.0, -math.inf])
 def test_shaft_at_the_edge_of_the_cam(assembly, power):

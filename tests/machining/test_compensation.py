@@ -54,7 +54,6 @@ def region(path, per_piece=30):
 
 
 @pytest.mark.slow
-@pytest.mark.thin(2)
 @pytest.mark.parametrize(
     ("cam", "part", "top"),
     few(
@@ -119,7 +118,6 @@ def test_a_drawing_says_what_it_is(tmp_path):
 
 
 @pytest.mark.slow
-@pytest.mark.thin(2)
 @pytest.mark.parametrize("cam", few([SUPPORT, ROLLER, PAIR, SHU_WU], 2))
 def test_no_file_passes_for_another(tmp_path, cam):
     """A nominal file in the place of a compensated one, and the reverse, fails; so does half of the kerf."""

@@ -47,7 +47,6 @@ def points_of(arcs, per_piece=12):
 
 
 @pytest.mark.slow
-@pytest.mark.thin(2)
 @pytest.mark.parametrize("body", [DWELLS, SHU_WU, REULEAUX, ROLLER])
 def test_a_shape_run_backwards_is_the_same_shape(body):
     _, design = design_of(body)

@@ -82,7 +82,6 @@ def test_cam_of_four_arcs() -> None:
 
 
 @pytest.mark.slow
-@pytest.mark.thin(4)
 @pytest.mark.parametrize(
     "text",
     [

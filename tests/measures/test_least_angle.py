@@ -78,7 +78,6 @@ def passes(recipe: Any) -> bool:
 
 
 @pytest.mark.slow
-@pytest.mark.thin(3)
 @pytest.mark.parametrize("name", few(CASES, 3))
 def test_the_angle_found_holds_and_a_hundredth_less_does_not(name: str) -> None:
     recipe = camgeo.load(CASES[name])

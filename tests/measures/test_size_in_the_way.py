@@ -26,7 +26,6 @@ def remark(text: str) -> str:
 
 
 @pytest.mark.slow
-@pytest.mark.thin(3)
 @pytest.mark.parametrize(
     "text",
     [

@@ -125,7 +125,6 @@ def test_points_round_a_contour_become_the_motion_that_they_were_made_of(followe
 
 
 @pytest.mark.slow
-@pytest.mark.thin(3)
 @pytest.mark.parametrize("follower", ["roller", "offset", "arm"])
 def test_points_of_a_pitch_curve_give_the_motion_of_the_centre_that_runs_on_it(follower, tmp_path):
     """The contour of a knife edge is the pitch curve of a roller whose cam is smaller all round by its radius."""

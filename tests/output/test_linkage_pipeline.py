@@ -224,7 +224,6 @@ def test_an_output_that_stands_still_but_for_rounding_is_one_long_dwell(tmp_path
 
 
 @pytest.mark.slow
-@pytest.mark.thin(2)
 @pytest.mark.parametrize(("over", "length"), [("shaft", 37.05), ("relative", 45.17)])
 def test_the_dwell_over_the_angle_asked_for_comes_first(over: str, length: float) -> None:
     report = pipeline.check(recipe("at_least: 36", f"over: {over}")).report

@@ -105,7 +105,6 @@ def test_every_shipped_recipe_exports_and_passes(path: Path, tmp_path: Path) -> 
 
 
 @pytest.mark.slow
-@pytest.mark.thin(2)
 @pytest.mark.parametrize("tolerance", [1e-9, 1e-10])
 def test_rollers_feel_a_spline_as_finely_as_it_is_drawn(tolerance: float) -> None:
     text = "{kind: double-roller, ratio: 2, arm: 55, roller_radius: 7, delta: {cos: {1: 130}, sin: {1: 60, 3: -14}}}"
@@ -131,7 +130,6 @@ def test_the_proof_leaves_less_than_a_fine_tolerance_permits() -> None:
 
 
 @pytest.mark.slow
-@pytest.mark.thin(2)
 @pytest.mark.parametrize(
     ("arc", "tolerance"),
     [("3, arm: 29.5775, arc: {radius: 54.9153}", 2.172e-4), ("7/5, arm: 34.7435, arc: {radius: 55.2848}", 5.166e-4)],
@@ -276,7 +274,6 @@ OF_STL = "camgeo.fit.polygon camgeo.output.solid kin.judge.volume kin.read.mesh.
 
 
 @pytest.mark.slow
-@pytest.mark.thin(2)
 @pytest.mark.parametrize(("kind", "own", "other"), [("stl", OF_STL, OF_DXF), ("dxf", OF_DXF, OF_STL)])
 def test_a_command_imports_its_scene_alone(kind: str, own: str, other: str, tmp_path: Path) -> None:
     recipe = RECIPES[0].with_name("shu-wu.yaml")
@@ -370,7 +367,6 @@ def test_a_file_of_the_recipes_own_name_is_judged_by_its_own_tolerance(tmp_path:
 
 
 @pytest.mark.slow
-@pytest.mark.thin(2)
 @pytest.mark.parametrize(
     ("clearance", "rounding", "breadth", "told"),
     [

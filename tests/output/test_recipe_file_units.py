@@ -120,7 +120,6 @@ def test_a_second_file_is_named_with_its_unit(made: Made) -> None:
 
 
 @pytest.mark.slow
-@pytest.mark.thin(4)
 @pytest.mark.parametrize("kind", DRAWN)
 def test_what_is_drawn_is_the_same_to_the_last_digits(kind: str, request: pytest.FixtureRequest) -> None:
     read: Callable[[Path], Any] = read_solid if kind == "step" else read_drawing
@@ -131,7 +130,6 @@ def test_what_is_drawn_is_the_same_to_the_last_digits(kind: str, request: pytest
 
 
 @pytest.mark.slow
-@pytest.mark.thin(4)
 @pytest.mark.parametrize(
     "kind",
     [
@@ -239,7 +237,6 @@ def test_the_words_of_a_program(made: Made) -> None:
 
 
 @pytest.mark.slow
-@pytest.mark.thin(4)
 @pytest.mark.parametrize("table", ["motion", "contacts", "polar", "inspection"])
 def test_the_columns_of_a_table(table: str, tmp_path: Path) -> None:
     rows = {}

@@ -283,7 +283,6 @@ def test_the_recipe_with_the_numbers_in_is_the_same_cam(text: str, units: str) -
 
 
 @pytest.mark.slow
-@pytest.mark.thin(2)
 @pytest.mark.parametrize("text", [BOUND.replace("radius: 8, offset: 0", "radius: 30"), RING])
 def test_undercut_of_a_sized_cam_says_which_key_of_sizing_frees_it(text: str) -> None:
     told = failure(text)

@@ -51,7 +51,6 @@ def test_the_hollows_of_the_pitch_curve_hold_the_roller(rise):
 
 
 @pytest.mark.slow
-@pytest.mark.thin(2)
 @pytest.mark.parametrize(("beyond", "sound"), [(-0.05, True), (0.05, False)])
 def test_a_roller_at_the_limit_against_all_its_own_positions(beyond, sound):
     """Contact is where no other place of the roller's centre lies nearer to the opening than its radius."""

@@ -156,7 +156,6 @@ D02 = {
 
 
 @pytest.mark.slow
-@pytest.mark.thin(3)
 @pytest.mark.parametrize("eccentricity", D02)
 def test_d02_roller_offset(eccentricity):
     points, most, fewest, radius = D02[eccentricity]
@@ -253,7 +252,6 @@ D07 = {
 
 
 @pytest.mark.slow
-@pytest.mark.thin(2)
 @pytest.mark.parametrize("side", D07)
 def test_d07_arm(side):
     most, fewest, radius = D07[side]

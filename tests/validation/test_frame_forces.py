@@ -587,7 +587,6 @@ def test_faces_of_unequal_stiffness():
 
 
 @pytest.mark.slow
-@pytest.mark.thin(2)
 @pytest.mark.parametrize("text", [PRESSED, UNEVEN])
 def test_speeds_from_which_faces_are_lost(text):
     """At that speed the least force of the face is 0, at that place; a little below it is above 0."""

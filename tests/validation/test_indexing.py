@@ -85,7 +85,6 @@ def rows(workshop):
 
 
 @pytest.mark.slow
-@pytest.mark.costly("globoids with two rollers")
 def test_a_roller_that_is_larger_is_told_apart():
     """A thousandth of a millimetre more is far outside what the rows of c16 may differ by."""
     theta, r, _, upper, z = TOUCHED[0]

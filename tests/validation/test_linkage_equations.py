@@ -26,7 +26,6 @@ INVERTED = [name for name, figure in FIGURES.items() if figure.coupler is None]
 
 
 @pytest.mark.slow
-@pytest.mark.thin(8)
 @pytest.mark.parametrize("name", FOUR_BARS)
 def test_equations_11_to_13_hold_for_our_positions(name):
     s, s1, figure, (three, _, _), (four, _, _) = four_bar_parts(name)
@@ -108,7 +107,6 @@ def test_equation_34_of_appendix_1(name):
 
 
 @pytest.mark.slow
-@pytest.mark.thin(12)
 @pytest.mark.parametrize("name", FOUR_BARS)
 def test_equation_34_vanishes_over_itself_where_theta_3_is_theta_4_and_ours_does_not(name):
     figure, scene = FIGURES[name], Scene.of(name)

@@ -346,7 +346,6 @@ def test_a_limit_of_its_force():
 
 
 @pytest.mark.slow
-@pytest.mark.thin(2)
 @pytest.mark.parametrize("interference", [1e-6, 5.0])
 def test_extremes(interference, tmp_path):
     """A millionth of a millimetre is held by a finer tolerance still; metres of stroke take millimetres."""

@@ -217,7 +217,6 @@ def test_the_discs_of_the_case():
 
 
 @pytest.mark.slow
-@pytest.mark.thin(4)
 @pytest.mark.parametrize("name", SHAPES)
 def test_the_check_on_jamming(name):
     """Of a face by its distance from the axis, of rollers by the second, which stands further from the guide."""

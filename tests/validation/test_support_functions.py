@@ -148,7 +148,6 @@ def constant_breadth(request, workshop):
 
 
 @pytest.mark.slow
-@pytest.mark.thin(18)
 def test_equation_4_breadth_is_constant_at_every_angle_of_the_file(constant_breadth):
     made, (breadth, _, _) = constant_breadth
     t = np.linspace(0, PI, 5001)

@@ -300,7 +300,6 @@ def goldberg(workshop):
 
 
 @pytest.mark.slow
-@pytest.mark.thin(5)
 def test_equation_7_1_on_the_file(pitch):
     curve, e = pitch
     assert np.abs(curve.closing(np.linspace(0, 2 * PI, 3601))).max() <= 3 * e

@@ -195,7 +195,6 @@ def test_in_flight_nothing_is_said_of_how_fast_a_free_motion_dies_away() -> None
 
 
 @pytest.mark.slow
-@pytest.mark.thin(2)
 @pytest.mark.parametrize(("play", "faces"), [("0.02", ["lower", "upper"]), ("50", [])])
 def test_which_faces_bear(play: str, faces: list[str]) -> None:
     report = pipeline.check(recipe(FOLLOWED.replace("preload: 150", f"backlash: {play}"))).report
@@ -311,7 +310,6 @@ verify: {angles: 120}
 
 
 @pytest.mark.slow
-@pytest.mark.thin(3)
 @pytest.mark.parametrize("train", [TRAIN, TRAIN.replace("preload: 150", "backlash: 0.02"), ""])
 def test_the_checks_are_foreseen(train: str) -> None:
     asked = recipe(train)
@@ -364,7 +362,6 @@ LOW = "nothing holds the follower to the cam"
 
 
 @pytest.mark.slow
-@pytest.mark.thin(6)
 @pytest.mark.parametrize(
     ("train", "message", "change"),
     [

@@ -173,7 +173,6 @@ def pressure_of(text: str) -> tuple[float, dict[str, Any]]:
 
 
 @pytest.mark.slow
-@pytest.mark.thin(10)
 @pytest.mark.parametrize(
     ("part", "width", "track", "value", "bound"),
     [

@@ -40,7 +40,6 @@ def assembled(text):
 
 
 @pytest.mark.slow
-@pytest.mark.thin(2)
 @pytest.mark.parametrize(("text", "bodies"), [(STEM, 7), (ARM, 7)])
 def test_nothing_meets_and_the_roller_stays_in_the_groove(text, bodies):
     assembly = assembled(text)

@@ -164,7 +164,6 @@ def test_what_is_pressed_together_overlaps_by_no_more_than_the_press(name: str) 
 
 
 @pytest.mark.slow
-@pytest.mark.thin(12)
 @pytest.mark.parametrize("name", few(["yoke, hubs", "flat pair", *OFF, *GUIDED], 2))
 def test_nothing_meets_at_any_angle(name: str) -> None:
     checks = collision_checks(made(name)[2])

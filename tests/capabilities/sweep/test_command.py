@@ -74,7 +74,6 @@ def test_verbose_tells_counts_and_designs(tmp_path: Path, capsys: pytest.Capture
 
 
 @pytest.mark.slow
-@pytest.mark.thin(2)
 @pytest.mark.usefixtures("no_pictures")
 @pytest.mark.parametrize(("margin", "status"), [(1.0, 3), (99.0, 1)])
 def test_a_file_left_out_for_want_of_a_package_exits_3(

@@ -174,7 +174,6 @@ def test_a_design_depends_on_no_other_to_the_last_bit():
 
 
 @pytest.mark.slow
-@pytest.mark.thin(4)
 @pytest.mark.parametrize(
     ("shape", "given"),
     [
@@ -435,7 +434,6 @@ def test_links_that_shape_the_cam_make_it_anew():
 
 # needs: dynamics
 @pytest.mark.slow
-@pytest.mark.thin(4)
 @pytest.mark.parametrize("figure", ["contact-force-least", "shaft-torque", "contact-pressure", "guide-force"])
 def test_forces_of_a_rigid_train_are_ranked_by(figure):
     """Those of each design's own cam, as limits have them."""

@@ -40,7 +40,6 @@ def apart_by_hand(count: int) -> list[int]:
 
 @pytest.mark.slow
 @pytest.mark.usefixtures("no_pictures", "pooled")
-@pytest.mark.thin(2)
 @pytest.mark.parametrize("jobs", [1, 2])
 def test_the_best_that_lie_apart_are_polished_and_equal_ones_are_one(jobs: int, tmp_path: Path) -> None:
     text = task(refine="true").recipe.text.replace("keep: 3", "keep: 20")

@@ -111,7 +111,6 @@ def reach_of_all(samples, band, row, k):
 
 
 @pytest.mark.slow
-@pytest.mark.thin(2)
 @pytest.mark.parametrize("band", [0.01, 0.1, 0.6, 30.0])
 def test_no_window_reaches_farther(band):
     samples = sampled(*waves(5, 12, 40))
@@ -155,7 +154,6 @@ def exact(seed, m, row):
 
 
 @pytest.mark.slow
-@pytest.mark.thin(3)
 @pytest.mark.parametrize("band", [0.003, 0.05, 0.4])
 def test_lengths_are_those_of_kin(band):
     m = 12

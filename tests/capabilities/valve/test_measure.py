@@ -284,7 +284,6 @@ def test_a_lobe_without_a_valve_has_no_events_at_the_lift_of_valves(tmp_path: Pa
 
 
 @pytest.mark.slow
-@pytest.mark.thin(2)
 @pytest.mark.parametrize(("units", "lifts"), [("mm", (0.1, 1.0)), ("inch", (0.006, 0.05, 0.2))])
 def test_the_tappets_durations_at_the_lifts_of_cards_are_told_without_a_limit(
     units: str, lifts: tuple[float, ...]

@@ -38,7 +38,6 @@ def least_of_pairs(curve, count=700):
 
 
 @pytest.mark.slow
-@pytest.mark.thin(3)
 @pytest.mark.parametrize("share", [0.5, 0.8, 0.95])
 @pytest.mark.parametrize("e", [1.0, 40.0])
 def test_the_waist_of_booths_lemniscate(share, e):
@@ -140,7 +139,6 @@ def test_where_newtons_method_has_not_come_to_is_no_neck(monkeypatch, steps):
 
 
 @pytest.mark.slow
-@pytest.mark.thin(2)
 @pytest.mark.parametrize("share", few([0.98, 0.999, 1.0 - 1e-6], 2))
 def test_a_waist_almost_folded_is_measured(share):
     # bent on its outer side to a hundredth of its width and less

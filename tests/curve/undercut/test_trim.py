@@ -152,7 +152,6 @@ def test_flat_faces_leave_the_body_of_their_half_planes(mean, terms):
 
 
 @pytest.mark.slow
-@pytest.mark.thin(3)
 @pytest.mark.parametrize(
     ("mean", "cos", "sin", "backwards", "left"),
     [
@@ -190,7 +189,6 @@ def test_rollers_leave_the_eroded_body(shape, e):
 
 
 @pytest.mark.slow
-@pytest.mark.thin(3)
 @pytest.mark.parametrize("e", [19.0, 19.3, 19.6])
 def test_a_bulb_too_small_for_the_roller_goes_with_its_neck(e):
     # both the bulb's end and the neck are too tight: one stretch is lost, and one corner left

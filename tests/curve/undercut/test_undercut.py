@@ -100,7 +100,6 @@ def test_depth_follows_its_law_however_small(margin):
 
 
 @pytest.mark.slow
-@pytest.mark.thin(3)
 @pytest.mark.parametrize(("base", "name"), [(5.0, "parabolic"), (1.0, "modified-sine"), (1.0, "harmonic")])
 def test_depth_is_the_lost_motion_of_a_flat_face(base, name):
     curve = breadth(base, name)
@@ -202,7 +201,6 @@ def test_depth_of_a_roller_is_how_far_it_hangs_free():
 
 
 @pytest.mark.slow
-@pytest.mark.thin(6)
 @pytest.mark.parametrize("excess", [1e-9, 1e-6, 1e-3, 0.1, 0.5])
 def test_the_neck_of_booths_lemniscate(excess):
     # m^2/l^2 = 0.9: the waist is sqrt(0.2) l, the ends have a radius of 60.06 mm

@@ -173,7 +173,6 @@ def test_a_curve_point_table_has_so_many_rows_and_no_more(tmp_path: Path) -> Non
 
 
 @pytest.mark.slow
-@pytest.mark.thin(2)
 @pytest.mark.parametrize(("controller", "tolerance"), [("codesys", "0.00001"), ("codesys-table", "0.01")])
 def test_the_step_is_the_widest_that_holds_the_tolerance(controller: str, tolerance: str, tmp_path: Path) -> None:
     path = written(tmp_path, "stem", f"for: {controller}", tolerance)
@@ -353,7 +352,6 @@ def test_a_table_of_six_degrees_has_its_position_and_loses_its_acceleration(tmp_
 
 
 @pytest.mark.slow
-@pytest.mark.thin(3)
 @pytest.mark.parametrize("controller", ["twincat", "twincat-table", "rockwell"])
 def test_rows_at_joints_are_fewer_and_at_every_joint(controller: str, tmp_path: Path) -> None:
     even, _, plain = one(tmp_path, f"for: {controller}", "0.002")

@@ -129,7 +129,6 @@ def test_no_angle_has_a_lower_peak_by_another_solver(count):
 
 
 @pytest.mark.slow
-@pytest.mark.thin(2)
 @pytest.mark.parametrize("card", [((1.27, 228.0), (0.15, 250.0), (5.08, 140.0)), ((1.27, 228.0), (5.08, 60.0))])
 def test_a_card_that_none_meets_is_refused_with_the_nearest_which_is_met(card):
     with pytest.raises(IntentError, match=r"the nearest has .* off: give those") as caught:
@@ -198,7 +197,6 @@ def crossed(members, shares, half, at):
 
 
 @pytest.mark.slow
-@pytest.mark.thin(3)
 @pytest.mark.parametrize(("other", "members", "shares", "half", "seconds"), BORDER)
 def test_true_lobes_of_few_members_are_met_though_they_lie_on_the_border(other, members, shares, half, seconds):
     """The closing side mixes its members by `other` and over the angle that gives it the opening's S'' at the nose."""
@@ -425,7 +423,6 @@ def velocity(motion, half):
 
 
 @pytest.mark.slow
-@pytest.mark.thin(2)
 @pytest.mark.parametrize("card", [CARD[:1], CARD])
 def test_the_velocity_is_the_least_that_a_programme_over_all_angles_finds(card):
     """Against the same choice by scipy's programme at angles from foot to nose about that found: none is below."""

@@ -51,7 +51,6 @@ def by_kernel(x, lo, hi):
 
 
 @pytest.mark.slow
-@pytest.mark.thin(4)
 @pytest.mark.parametrize("reading", [0.02, 0.2, 0.6])
 def test_the_integral_is_that_of_the_kernel(reading):
     x = np.arange(12) * TURN / 12 + 0.03 * np.sin(7.0 * np.arange(12))
@@ -71,7 +70,6 @@ def by_free_kernel(x, lo, hi):
 
 
 @pytest.mark.slow
-@pytest.mark.thin(4)
 @pytest.mark.parametrize("reading", [0.002, 0.02, 0.2])
 def test_with_free_ends_the_integral_is_that_of_their_kernel(reading):
     x = np.linspace(0.0, 3.0, 13) + 0.03 * np.sin(7.0 * np.arange(13))
@@ -230,7 +228,6 @@ def test_many_bounds_are_the_same_as_all_at_once(monkeypatch):
 
 
 @pytest.mark.slow
-@pytest.mark.thin(2)
 @pytest.mark.parametrize("count", [3_000, 120_000])
 def test_a_search_among_noise_ends_before_it_touches_a_thousand_bounds(count, monkeypatch):
     knots = []

@@ -468,7 +468,6 @@ def test_a_gap_is_bridged():
 
 
 @pytest.mark.slow
-@pytest.mark.thin(2)
 @pytest.mark.parametrize("readings", [3.0, 30.0])
 def test_noise_beyond_the_digits_is_remarked_with_a_reading_that_calms_it(readings):
     rng = np.random.default_rng(7)
@@ -533,7 +532,6 @@ def test_a_distance_of_more_than_a_hundredth_of_the_stroke_is_remarked():
 
 
 @pytest.mark.slow
-@pytest.mark.thin(3)
 @pytest.mark.parametrize(("end", "word"), [(2 * math.pi, "radians"), (1.0, "turns"), (100.0, "percent")])
 def test_angles_that_are_hardly_degrees_are_remarked_with_what_they_may_be(end, word):
     theta = np.radians(np.linspace(0, end, 61))
@@ -633,7 +631,6 @@ def wavy(x):
 
 
 @pytest.mark.slow
-@pytest.mark.thin(6)
 @pytest.mark.parametrize(
     ("law", "total"),
     [
@@ -702,7 +699,6 @@ def test_a_motion_with_open_ends_that_rests_at_both_is_a_law():
 
 
 @pytest.mark.slow
-@pytest.mark.thin(6)
 @pytest.mark.parametrize("place", [3, 4, 40, 96, 97])
 def test_a_row_that_is_off_is_named_near_open_ends_too(place):
     rows = sampled(wavy, 100.0, places=4)
@@ -720,7 +716,6 @@ def test_a_row_that_is_off_is_named_near_open_ends_too(place):
 
 
 @pytest.mark.slow
-@pytest.mark.thin(6)
 @pytest.mark.parametrize("step", [1.0, 2.5, 5.0])
 @pytest.mark.parametrize("places", [3, 5])
 def test_no_row_of_a_sound_table_with_open_ends_stands_out(step, places):

@@ -60,7 +60,6 @@ def test_a_law_is_followed_within_its_digits(table):
 
 
 @pytest.mark.slow
-@pytest.mark.thin(4)
 @pytest.mark.parametrize("table", thin(list(tables(UNEVEN, seed=32, uneven=True)), set(range(0, UNEVEN, 30))), ids=str)
 def test_uneven_steps_are_followed(table):
     if table.stroke * 10**table.places >= 4:
@@ -69,7 +68,6 @@ def test_uneven_steps_are_followed(table):
 
 
 @pytest.mark.slow
-@pytest.mark.thin(3)
 @pytest.mark.parametrize("noise", NOISES)
 def test_noise_is_followed_and_remarked_where_it_is_more_than_the_digits(noise):
     rng, remarked = np.random.default_rng(17), []

@@ -50,7 +50,6 @@ def test_instant_centres_of_a_yoke() -> None:
 
 
 @pytest.mark.slow
-@pytest.mark.thin(4)
 @pytest.mark.parametrize(("name", "count"), [("w-booth", 4), ("w-figure-5", 6), ("w-figure-9", 8), ("w-rosette", 10)])
 def test_chords_of_one_length_close(name: str, count: int) -> None:
     """2 lambda chords of 2 l sin alpha, each beginning where the one before ends; the first is AB (W section 6)."""

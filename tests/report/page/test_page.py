@@ -286,7 +286,6 @@ def test_a_linkage_stands_as_kin_says_over_the_shaft_angle() -> None:
 
 
 @pytest.mark.slow
-@pytest.mark.thin(2)
 @pytest.mark.parametrize("offset", [-40.0, 9.0])
 def test_a_joint_off_the_mid_line_is_where_the_coupler_ends(tmp_path: Path, offset: float) -> None:
     """An offset beyond the frame's side hangs the bar on an arm that prolongs the side."""

@@ -85,7 +85,6 @@ def test_no_dip_below_the_speed_at_which_float_begins_is_passed_over(ratio, zeta
 
 
 @pytest.mark.slow
-@pytest.mark.thin(2)
 @pytest.mark.parametrize(("ratio", "zeta"), [(1e3 + 0.3, 1e-5), (1e5 + 0.3, 1e-6)])
 def test_a_search_that_takes_too_much_says_between_which_speeds_float_begins(ratio, zeta):
     train = stiff(ratio, zeta, preload=150.0)
