@@ -3,11 +3,9 @@
 Rows: a test marked `thin(n)` runs on a diagonal of its rows, those whose places in its parameters add up to a multiple
 of n; the others are slow. A table of n cams by n faults so has each fault once, and each cam.
 
-Collection: a quick run makes no items of what it leaves out, which are the most, unless a test is named by its id.
-
 Property tests: a run repeats the last one's examples, so that a change is judged by what it changes;
-`HYPOTHESIS_PROFILE=explore` looks for new ones, and what it finds becomes an example of its own. A quick run takes a
-sixteenth of them; any other, such as `pytest -m slow`, takes all, and every property test counts as slow in it.
+`HYPOTHESIS_PROFILE=explore` looks for new ones, and what it finds becomes an example of its own. A quick run takes an
+eighth of them; any other, such as `pytest -m slow`, takes all, and every property test counts as slow in it.
 
 Time: the tests of a file run in one process of xdist, so that what they share is made once; compiled modules are kept
 even where the shell asks for none (PYTHONDONTWRITEBYTECODE), since every process that a test starts would compile
@@ -18,7 +16,6 @@ the first test is not looked through for garbage again and again.
 from __future__ import annotations
 
 import gc
-import inspect
 import os
 import signal
 import sys
@@ -28,11 +25,11 @@ from typing import TYPE_CHECKING
 import mpmath
 import pytest
 from hypothesis import HealthCheck, settings
-from support.cases import FULL, quick_rows, thinned_out
+from support.cases import FULL, thinned_out
 from support.designs import share
 
 if TYPE_CHECKING:
-    from collections.abc import Generator, Iterator
+    from collections.abc import Iterator
 
     from xdist.remote import Producer
     from xdist.scheduler import LoadFileScheduling
@@ -51,7 +48,7 @@ if signal.getsignal(signal.SIGINT) is signal.SIG_IGN:
 QUICK = "not slow"
 DIGITS = 50  # of mpmath
 UNTIMED = settings(deadline=None, suppress_health_check=[HealthCheck.too_slow])  # a busy machine is no fault
-settings.register_profile("quick", UNTIMED, derandomize=True, max_examples=FULL // 16)
+settings.register_profile("quick", UNTIMED, derandomize=True, max_examples=FULL // 8)
 settings.register_profile("repeat", UNTIMED, derandomize=True, max_examples=FULL)
 settings.register_profile("explore", UNTIMED, max_examples=FULL)
 
@@ -87,30 +84,11 @@ def pytest_configure(config: pytest.Config) -> None:
         config.pluginmanager.register(share(), "designs")
 
 
-def leaves_out(config: pytest.Config) -> bool:
-    """Whether a run makes no items of slow tests: a quick one, but where an id may be that of a slow one."""
-    return config.getoption("markexpr") == QUICK and not any("::" in argument for argument in config.args)
-
-
-@pytest.hookimpl(tryfirst=True)
-def pytest_pycollect_makeitem(collector: pytest.Collector, obj: object) -> list[pytest.Item] | None:
-    own = obj.pytestmark if inspect.isfunction(obj) and hasattr(obj, "pytestmark") else ()
-    return [] if leaves_out(collector.config) and any(mark.name == "slow" for mark in own) else None
-
-
-@pytest.hookimpl(wrapper=True)
-def pytest_generate_tests(metafunc: pytest.Metafunc) -> Generator[None]:
-    yield
-    if leaves_out(metafunc.config):
-        quick_rows(metafunc)
-
-
 @pytest.hookimpl(tryfirst=True)
 def pytest_collection_modifyitems(config: pytest.Config, items: list[pytest.Item]) -> None:
     full = config.getoption("markexpr") != QUICK
     chance = [item for item in items if full and item.get_closest_marker("hypothesis")]
-    thinned = [] if leaves_out(config) else thinned_out(items)
-    for item in [*chance, *thinned]:
+    for item in [*chance, *thinned_out(items)]:
         item.add_marker(pytest.mark.slow)
 
 

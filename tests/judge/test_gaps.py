@@ -144,7 +144,6 @@ def test_an_open_bore_does_not_keep_the_contour_from_being_judged(made: tuple[Pa
     assert {"contour", "motion"} < set(checks)
 
 
-@pytest.mark.thin(2)
 @pytest.mark.parametrize(
     ("name", "words", "message"),
     [

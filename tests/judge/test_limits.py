@@ -95,7 +95,7 @@ def test_a_double_roller_that_is_steep_but_bounded_is_held_as_before(tmp_path: P
     assert set(failing(report(tmp_path, ROLLERS.format(delta=1799, more=", motion_error: 1")))) == {"motion"}
 
 
-@pytest.mark.slow
+@pytest.mark.thin(2)
 @pytest.mark.parametrize(
     ("share", "fails", "remarked"),
     [(1.01 * MOST_SHARE, True, False), (0.99 * MOST_SHARE, False, True), (0.99 * LOOSE, False, False)],
@@ -120,7 +120,6 @@ def test_a_steep_stem_on_both_sides_of_its_bounds(tmp_path: Path, share: float, 
         assert "3.96 mm, is 0.099 times the stroke; verify.motion_error" in remark.sentence
 
 
-@pytest.mark.slow
 def test_a_face_that_rests_beside_its_pivot(tmp_path: Path) -> None:
     """Its lever is 1.2 mm of the pivot's 70: what the tolerance gives there is no measure of it."""
     assert set(failing(report(tmp_path, FACE.format(base=69.99)))) == {"motion"}

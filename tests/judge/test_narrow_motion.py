@@ -90,7 +90,6 @@ def test_a_law_that_cannot_be_followed_says_so(monkeypatch: pytest.MonkeyPatch) 
         cubic_cells(law, law.breaks, 1e-12)
 
 
-@pytest.mark.slow
 def test_what_the_proof_leaves_open_counts(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     """A spike of 1e-7 rad is not met by a search that ends early; what the motion may do there is not left out."""
     monkeypatch.setattr("kin.follower.tracking.MOST_OPEN", 200_000)

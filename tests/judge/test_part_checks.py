@@ -72,7 +72,7 @@ def test_untouched_it_holds(drawing, tmp_path):
     assert spoilt(drawing, tmp_path, lambda space: space) == set()
 
 
-@pytest.mark.slow
+@pytest.mark.thin(6)
 @pytest.mark.parametrize("which", range(4))
 @pytest.mark.parametrize("angle", [0.0, 2.0])
 def test_hole_moved_by_three_tolerances(drawing, tmp_path, which, angle):

@@ -49,7 +49,7 @@ def failures(recipe: Path, drawing: Path) -> set[str]:
     return {check["name"] for check in report["checks"] if not check["ok"]}
 
 
-@pytest.mark.slow
+@pytest.mark.thin(12)
 @pytest.mark.parametrize("name", FOLLOWERS)
 def test_a_drawing_turned_by_two_hundredths_of_a_degree(tmp_path: Path, name: str) -> None:
     recipe = written(tmp_path, FOLLOWERS[name])
@@ -91,7 +91,7 @@ def test_a_table_of_cam_degrees_read_as_crank_degrees(tmp_path: Path) -> None:
     assert failures(meant, exported(tmp_path / "mistaken.yaml")) == {"contour", "motion"}
 
 
-@pytest.mark.slow
+@pytest.mark.thin(16)
 @pytest.mark.parametrize("name", FOLLOWERS)
 def test_a_motion_of_crank_degrees_on_the_cam(tmp_path: Path, name: str) -> None:
     recipe = written(tmp_path / "meant", FOLLOWERS[name])

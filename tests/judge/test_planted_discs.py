@@ -58,7 +58,7 @@ def rotated(points, degrees):
     return points @ np.array([[c, s], [-s, c]])
 
 
-@pytest.mark.thin(8)
+@pytest.mark.thin(4)
 @pytest.mark.parametrize("name", FOLLOWERS)
 def test_a_sound_file_passes(tmp_path, name):
     made, follower = chain(name), FOLLOWERS[name]
@@ -149,7 +149,7 @@ MISTAKEN = {
 }
 
 
-@pytest.mark.slow
+@pytest.mark.thin(24)
 @pytest.mark.parametrize("fault", MISTAKEN)
 def test_a_cam_of_another_follower_is_caught(tmp_path, fault):
     name, meant = MISTAKEN[fault]
@@ -193,7 +193,6 @@ def test_a_ring_of_another_size_or_without_an_opening(tmp_path):
     assert failures(beside, intent(FOLLOWERS["ring"])) == {"bore"}
 
 
-@pytest.mark.slow
 def test_a_ring_with_bolt_holes(tmp_path):
     made, places = chain("ring"), [(92.0, 0.0), (0.0, -92.0)]
     holes = tuple(round_hole(f"bolt {k}", "holes", place, 6.0) for k, place in enumerate(places))

@@ -106,7 +106,7 @@ def test_a_sound_file_passes_every_check(tmp_path, cam, form):
 # --- drawings ---------------------------------------------------------------------------------------------------------
 
 
-@pytest.mark.slow
+@pytest.mark.thin(6)
 @pytest.mark.parametrize("depth", [0.02, -0.02])
 @pytest.mark.parametrize("k", [0, EDGES - 1])
 def test_a_vertex_moved(tmp_path, cam, depth, k):
@@ -119,7 +119,7 @@ def test_a_vertex_moved(tmp_path, cam, depth, k):
     assert ("motion" in found) == (depth > 0)
 
 
-@pytest.mark.slow
+@pytest.mark.thin(3)
 def test_a_vertex_moved_along_the_contour_until_it_turns_back(tmp_path, cam):
     intent, points = cam
     spoilt = points(EDGES)
@@ -159,7 +159,7 @@ def test_a_reversed_segment(tmp_path, cam):
     assert "turns back on itself" in contour.detail
 
 
-@pytest.mark.slow
+@pytest.mark.thin(3)
 def test_a_stretch_drawn_backwards(tmp_path, cam):
     intent, points = cam
     spoilt = points(EDGES)
@@ -167,7 +167,6 @@ def test_a_stretch_drawn_backwards(tmp_path, cam):
     assert {"contour", "closed"} & failures(write_dxf(tmp_path / "cam.dxf", spoilt), intent)
 
 
-@pytest.mark.thin(2)
 def test_an_open_contour(tmp_path, cam):
     intent, points = cam
     path = write_dxf(tmp_path / "cam.dxf", points(EDGES)[:-5], closed=False)
@@ -181,7 +180,7 @@ def test_a_contour_that_is_closed_by_a_chord(tmp_path, cam):
     assert "contour" in failures(write_dxf(tmp_path / "cam.dxf", points(EDGES)[:-40]), intent)
 
 
-@pytest.mark.slow
+@pytest.mark.thin(6)
 @pytest.mark.parametrize("scale", [1.001, 0.999])
 def test_scale(tmp_path, cam, scale):
     intent, points = cam
@@ -195,7 +194,7 @@ def test_a_turn(tmp_path, cam, degrees):
     assert {"contour", "motion"} <= failures(write_dxf(tmp_path / "cam.dxf", turned(points(EDGES), degrees)), intent)
 
 
-@pytest.mark.slow
+@pytest.mark.thin(6)
 @pytest.mark.parametrize("shift", [(0.01, 0.0), (0.0, -0.01)])
 def test_a_shift(tmp_path, cam, shift):
     intent, points = cam
@@ -222,7 +221,7 @@ def test_no_units(tmp_path, cam):
     assert failures(write_dxf(tmp_path / "cam.dxf", points(EDGES), units=0), intent) == {"units"}
 
 
-@pytest.mark.slow
+@pytest.mark.thin(3)
 def test_inches_meant_and_inches_drawn(tmp_path, cam):
     intent, points = cam
     inches = part_of(gauge_of(intent), mm=25.4, bore=10.0)
@@ -234,7 +233,7 @@ def test_inches_meant_and_inches_drawn(tmp_path, cam):
     assert "units" in failures(write_dxf(tmp_path / "not.dxf", inch, bores=[(0, 0, 5 / 25.4)]), inches)
 
 
-@pytest.mark.slow
+@pytest.mark.thin(3)
 def test_everything_drawn_twice(tmp_path, cam):
     intent, points = cam
     assert "closed" in failures(write_dxf(tmp_path / "cam.dxf", points(EDGES), twice=True), intent)
@@ -259,7 +258,7 @@ def test_a_segment_of_no_length(tmp_path, cam):
     assert "closed" in failures(write_dxf(tmp_path / "cam.dxf", doubled), intent)
 
 
-@pytest.mark.slow
+@pytest.mark.thin(3)
 def test_a_mirrored_cam(tmp_path, cam):
     intent, points = cam
     mirrored = points(EDGES) * [1.0, -1.0]
@@ -306,7 +305,6 @@ def test_openings_that_are_passed_over(tmp_path, cam, bore, faults):
     assert failures(write_dxf(tmp_path / "cam.dxf", points(EDGES), bores=bores), meant) == faults
 
 
-@pytest.mark.slow
 def test_an_angular_bore(tmp_path):
     """A square as large as the bore: right area at most, wrong everywhere."""
     intent, points = CAMS["yoke"]
@@ -343,7 +341,6 @@ def test_text_that_is_no_drawing(tmp_path, cam):
     assert failures(path, cam[0]) == {"readable"}
 
 
-@pytest.mark.thin(2)
 def test_an_empty_drawing(tmp_path, cam):
     document = ezdxf.new("R2010")
     document.saveas(tmp_path / "cam.dxf")
@@ -386,7 +383,6 @@ def test_metal_left_in_a_hollow_is_felt_and_seen(tmp_path):
     assert verdict.measured_error == pytest.approx(0.005, rel=0.01)
 
 
-@pytest.mark.slow
 def test_two_contours_each_within_the_tolerance_can_jam_a_yoke(tmp_path):
     """All corners outside by 0.9 e: within the tolerance, and the breadth 1.8 e too large; a play limit of e tells."""
     intent, _ = CAMS["yoke"]
@@ -397,7 +393,7 @@ def test_two_contours_each_within_the_tolerance_can_jam_a_yoke(tmp_path):
     assert failures(narrow, intent, Limits(1e-3, play=1e-3)) == {"constant-breadth"}
 
 
-@pytest.mark.slow
+@pytest.mark.thin(3)
 def test_a_motion_limit_of_the_callers_own(tmp_path, cam):
     intent, points = cam
     path = write_dxf(tmp_path / "cam.dxf", points(EDGES))
@@ -421,7 +417,6 @@ def stl(folder, points, **shape):
     return write_stl(folder / "cam.stl", triangles_of(points, **shape))
 
 
-@pytest.mark.thin(2)
 def test_a_solid_with_a_triangle_missing(tmp_path, cam):
     intent, points = cam
     found = failures(write_stl(tmp_path / "cam.stl", triangles_of(points(EDGES))[1:]), intent)
@@ -443,7 +438,6 @@ def test_a_solid_turned_inside_out(tmp_path, cam):
     assert "watertight" in failures(write_stl(tmp_path / "cam.stl", triangles_of(points(EDGES))[:, ::-1]), intent)
 
 
-@pytest.mark.thin(2)
 def test_a_solid_with_a_triangle_twice(tmp_path, cam):
     intent, points = cam
     triangles = triangles_of(points(EDGES))
@@ -451,7 +445,6 @@ def test_a_solid_with_a_triangle_twice(tmp_path, cam):
     assert "watertight" in failures(write_stl(tmp_path / "cam.stl", doubled), intent)
 
 
-@pytest.mark.thin(3)
 @pytest.mark.parametrize("lost", [1, 50, 10_000])
 def test_a_solid_cut_short(tmp_path, cam, lost):
     intent, points = cam
@@ -460,7 +453,7 @@ def test_a_solid_cut_short(tmp_path, cam, lost):
     assert failures(path, intent) == {"readable"}
 
 
-@pytest.mark.slow
+@pytest.mark.thin(3)
 def test_a_solid_moved(tmp_path, cam):
     intent, points = cam
     aside = write_stl(tmp_path / "aside.stl", moved(triangles_of(points(EDGES)), 0.02, 0.0))
@@ -475,7 +468,7 @@ def test_a_solid_too_thick(tmp_path, cam):
     assert failures(stl(tmp_path, points(EDGES), high=8.01), intent) == {"thickness"}
 
 
-@pytest.mark.slow
+@pytest.mark.thin(3)
 def test_a_solid_in_inches(tmp_path, cam):
     intent, points = cam
     path = write_stl(tmp_path / "cam.stl", triangles_of(points(EDGES)) / 25.4)
@@ -494,7 +487,7 @@ def test_a_solid_whose_top_differs_from_its_bottom(tmp_path, cam):
     assert "thickness" in failures(write_stl(tmp_path / "cam.stl", triangles), intent)
 
 
-@pytest.mark.thin(4)
+@pytest.mark.thin(2)
 def test_a_solid_without_its_bore(tmp_path, cam):
     intent, points = cam
     vertices = points(EDGES)

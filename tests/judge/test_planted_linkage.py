@@ -206,7 +206,7 @@ def test_a_fault(tmp_path, fault, form):
     assert caught <= failures(written(tmp_path, form, points()))
 
 
-@pytest.mark.slow
+@pytest.mark.thin(6)
 @pytest.mark.parametrize("form", few(FORMS, 3))
 @pytest.mark.parametrize("k", range(0, EDGES, 200))
 def test_metal_left_on_anywhere_is_felt_by_the_output(tmp_path, form, k):
@@ -232,6 +232,7 @@ def test_one_bulge_flipped_or_left_out_or_doubled(tmp_path, factor):
 
 
 @pytest.mark.slow
+@pytest.mark.thin(2)
 @pytest.mark.parametrize("form", FORMS)
 def test_a_dwell_spoilt_by_a_bump_within_it(tmp_path, form):
     """Metal on where the output should stand still, which lifts it out of the band."""

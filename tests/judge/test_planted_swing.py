@@ -80,7 +80,6 @@ def false_lift(intent, law):
     return dataclasses.replace(linked(intent, mechanism=mechanism), surfaces=surfaces), lift
 
 
-@pytest.mark.slow
 def test_a_sound_file_passes(tmp_path, intent):
     assert failures(file_of(tmp_path, gauge_of(intent).motion), intent) == set()
 

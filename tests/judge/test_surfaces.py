@@ -190,7 +190,7 @@ def test_planted_faults_are_caught(tmp_path, fault, caught):
     assert failures(verify(path, groove(law_of(WAVY), bore=10.0), 90, LIMITS)) >= caught
 
 
-@pytest.mark.slow
+@pytest.mark.thin(4)
 @pytest.mark.parametrize("by", [0.9, 1.1])
 @pytest.mark.parametrize("sign", [-1.0, 1.0])
 def test_the_closure_has_two_sides(tmp_path, by, sign):
@@ -205,7 +205,6 @@ def test_the_closure_has_two_sides(tmp_path, by, sign):
     }
 
 
-@pytest.mark.thin(4)
 @pytest.mark.parametrize("missing", [0, 1])
 @pytest.mark.parametrize("layers", [("GROOVE_INNER", "GROOVE_OUTER"), ("CUT", "CUT")])
 def test_a_flank_that_is_missing(tmp_path, layers, missing):
@@ -238,7 +237,6 @@ def test_the_flanks_of_an_arm(tmp_path):
     assert (closure.play.least, closure.play.most) == pytest.approx((math.degrees(wider - lean),) * 2, abs=1e-9)
 
 
-@pytest.mark.slow
 @pytest.mark.parametrize("back", [0.0, 0.02])
 def test_two_discs_in_two_files(tmp_path, back):
     """Two flat faces D apart on two eccentric discs: p2(t + pi) = D - p1(t), and disc 2 may stand back."""

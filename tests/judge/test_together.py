@@ -101,7 +101,6 @@ def test_discs_turned_together_are_off_their_keyway(tmp_path):
     assert "form-closure" not in {name for _, _, name in found}
 
 
-@pytest.mark.slow
 def test_files_swapped(tmp_path):
     assert failures(judged(second(tmp_path / "a.dxf"), first(tmp_path / "b.dxf"))) >= {
         ("a.dxf", "disc 1", "contour"),

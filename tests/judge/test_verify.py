@@ -77,7 +77,6 @@ def test_a_cubic_spline_in_a_yoke(tmp_path, count, expected):
     assert verdict.motion.max == pytest.approx(seen, rel=1e-3, abs=3e-9)
 
 
-@pytest.mark.slow
 def test_a_cubic_spline_under_rollers(tmp_path):
     def hollow(t):
         return ROLLERS.envelope.points(t)
@@ -100,7 +99,6 @@ def test_a_spoilt_control_point_of_a_spline(tmp_path):
     assert not named(verdict)["contour"].ok
 
 
-@pytest.mark.slow
 def test_an_ellipse_entity_works_a_right_angled_pair_exactly(tmp_path):
     """W section 5: lambda = 2, D = m^2 cos 2t. The ELLIPSE is exact, so is the motion."""
     a, b = np.sqrt(2 * (60.0**2 + 900.0)), np.sqrt(2 * (60.0**2 - 900.0))
@@ -216,6 +214,7 @@ def test_a_trimmed_undercut_of_a_yoke(tmp_path):
 
 
 @pytest.mark.slow
+@pytest.mark.thin(2)
 @pytest.mark.parametrize("fault", [0.02, -0.02])
 def test_a_fault_on_a_trimmed_contour(tmp_path, fault):
     lift = lift_hypocycloid(3, 4.0, 50.0)

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import pytest
 from _pytest.mark import ParameterSet
@@ -32,26 +32,7 @@ def examples(full: int) -> int:
     return max(3, full * settings().max_examples // FULL)
 
 
-class Row:
-    """A row of a test that is not yet an item, with what `thinned_out` asks of one."""
-
-    def __init__(self, definition: pytest.Function, callspec: Any) -> None:
-        self.nodeid, self.callspec = definition.nodeid, callspec
-        self._marked = definition.get_closest_marker
-
-    def get_closest_marker(self, name: str) -> pytest.Mark | None:
-        return next((mark for mark in self.callspec.marks if mark.name == name), None) or self._marked(name)
-
-
-def quick_rows(metafunc: pytest.Metafunc) -> None:
-    """Leave a test the rows that a quick run takes, or a slow one, as pytest makes an item of a test without rows."""
-    rows = [Row(metafunc.definition, callspec) for callspec in metafunc._calls]
-    thinned = {id(row) for row in thinned_out(rows)}
-    quick = [row for row in rows if row.get_closest_marker("slow") is None and id(row) not in thinned]
-    metafunc._calls = [row.callspec for row in quick or rows[:1]]
-
-
-def thinned_out(items: Iterable[pytest.Item | Row]) -> Iterator[pytest.Item | Row]:
+def thinned_out(items: Iterable[pytest.Item]) -> Iterator[pytest.Item]:
     """Rows of tests marked `thin(every)` that are left to the slow run: those off the diagonal of the parameters.
 
     A row's place in a parameter is told by its name there, among the rows that are not slow anyway: the first stays.
