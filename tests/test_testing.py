@@ -75,6 +75,7 @@ def moved(vertices, by, at=100):
 # --- breadth ----------------------------------------------------------------------------------------------------------
 
 
+@pytest.mark.thin(2)
 @pytest.mark.parametrize("write", [dxf, stl])
 def test_breadth_of_a_good_file(tmp_path, vertices, write):
     path = write(tmp_path, vertices)
@@ -86,6 +87,7 @@ def test_breadth_of_a_good_file(tmp_path, vertices, write):
         assert 49.999 <= found.least < found.greatest <= 50.0 + 1e-5
 
 
+@pytest.mark.slow
 def test_breadth_is_that_of_the_whole_turn(tmp_path):
     # an ellipse-like p = 20 + cos 2t has breadth 40 + 2 cos 2t
     path = dxf(tmp_path, support_points(2000, 20.0, ((2, 1.0, 0.0),)))
@@ -113,6 +115,7 @@ def test_the_breadth_is_held_to_twice_the_tolerance_and_no_more(tmp_path):
         testing.assert_constant_breadth(path, float("nan"))
 
 
+@pytest.mark.thin(2)
 @pytest.mark.parametrize("write", [dxf, stl])
 def test_breadth_of_spoilt_files(tmp_path, vertices, write):
     with pytest.raises(AssertionError, match=r"breadth 50\.0\d+ at "):
@@ -348,6 +351,7 @@ def test_a_recipe_whose_check_fails(recipe):
         testing.assert_recipe(recipe)
 
 
+@pytest.mark.thin(2)
 @pytest.mark.parametrize("undercut", ["refuse", "trim"])
 def test_undercut(recipe, undercut):
     recipe.write_text(CAM.replace("mean: 25", "mean: 20").replace("}}}\n", f"}}}}, undercut: {undercut}}}\n", 1))

@@ -37,7 +37,7 @@ def wrong(told: runner.Told) -> list[str]:
 
 
 @pytest.mark.costly("what an attack does is by chance")
-@pytest.mark.thin(3)
+@pytest.mark.thin(5)
 @pytest.mark.parametrize(
     "number",
     [

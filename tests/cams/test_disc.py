@@ -36,6 +36,7 @@ def table(tmp_path):
     return tmp_path
 
 
+@pytest.mark.thin(2)
 @pytest.mark.parametrize(
     ("motion", "follower", "units", "greatest"),
     [

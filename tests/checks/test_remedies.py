@@ -397,7 +397,7 @@ DESIGNS: list[tuple[str, str, Follow]] = [
 ]
 
 
-@pytest.mark.thin(16)
+@pytest.mark.thin(48)
 @pytest.mark.parametrize(("text", "pattern", "follow"), DESIGNS, ids=[pattern for _, pattern, _ in DESIGNS])
 def test_a_design_that_is_changed_as_told_is_sound(text: str, pattern: str, follow: Follow) -> None:
     assert not said(follow(figure(said(text), pattern)))

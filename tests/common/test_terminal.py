@@ -63,7 +63,7 @@ def test_a_full_standard_error_changes_no_status(call: list[str]) -> None:
         assert run(*call, capture_output=False, stderr=full).returncode == 2
 
 
-@pytest.mark.thin(12)
+@pytest.mark.slow
 @FULL
 @pytest.mark.parametrize("buffered", [True, False])
 @pytest.mark.parametrize("call", [["schema"], ["--help"], ["new"], ["--version"], ["laws"]])
@@ -129,6 +129,7 @@ def test_json_stays_json_where_it_is_escaped(monkeypatch: pytest.MonkeyPatch) ->
         assert "\x7f" not in text
 
 
+@pytest.mark.thin(3)
 @pytest.mark.parametrize("command", ["check", "export", "verify", "report", *ADDED, "new"])
 def test_control_characters_of_a_path(command: str, capsys: pytest.CaptureFixture[str], tmp_path: Path) -> None:
     name = str(tmp_path / "\x1b[31m\nred.yaml")

@@ -30,6 +30,7 @@ def test_a_circle_of_one_piece_goes_round_what_is_inside_it(degrees, sweep):
         assert not goes_round(circle(distance * centre, 50.0, 0.0, sweep))
 
 
+@pytest.mark.slow
 def test_arcs_that_bulge_out_and_in_go_round_as_a_polygon_through_many_of_their_points():
     rng = np.random.default_rng(5)
     both = set()

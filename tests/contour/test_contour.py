@@ -133,6 +133,7 @@ def variants(contour: Contour) -> list[Contour]:
     return turns + [c.reversed() for c in turns]
 
 
+@pytest.mark.thin(3)
 @pytest.mark.parametrize("known", KNOWN.values(), ids=KNOWN.keys())
 def test_support_function_is_the_closed_form(known: Known) -> None:
     for contour in variants(known.contour):
@@ -143,7 +144,7 @@ def test_support_function_is_the_closed_form(known: Known) -> None:
         assert piece.max() < len(contour)
 
 
-@pytest.mark.thin(2)
+@pytest.mark.thin(4)
 @pytest.mark.parametrize("known", KNOWN.values(), ids=KNOWN.keys())
 def test_the_contact_lies_on_the_piece_that_is_named(known: Known) -> None:
     _, point, piece = known.contour.support(ANGLES)
@@ -154,6 +155,7 @@ def test_the_contact_lies_on_the_piece_that_is_named(known: Known) -> None:
         assert closed.distance(there).max() < 2e-9
 
 
+@pytest.mark.thin(3)
 @pytest.mark.parametrize("known", KNOWN.values(), ids=KNOWN.keys())
 def test_measures(known: Known) -> None:
     directions = np.arange(4) * np.pi / 2.0
@@ -167,6 +169,7 @@ def test_measures(known: Known) -> None:
         assert contour.is_convex == (not clockwise)
 
 
+@pytest.mark.thin(3)
 @pytest.mark.parametrize("known", KNOWN.values(), ids=KNOWN.keys())
 def test_mirrored_and_scaled(known: Known) -> None:
     mirrored = known.contour.mirrored()
@@ -225,6 +228,7 @@ def lumpy(draw: st.DrawFn) -> tuple[np.ndarray, np.ndarray]:
     return np.array(points, dtype=float), np.array(bulges, dtype=float)
 
 
+@pytest.mark.slow
 @given(lumpy())
 @settings(max_examples=examples(150), deadline=None)
 def test_support_bounds_every_point_and_is_reached(shape: tuple[np.ndarray, np.ndarray]) -> None:
@@ -330,6 +334,7 @@ def test_hull_of_points_on_a_grid(points: list[tuple[int, int]]) -> None:
     assert ring.exterior.is_ccw
 
 
+@pytest.mark.slow
 def test_hull_of_a_circle_with_one_point_pulled_out() -> None:
     """A thousand corners vanish behind it, one after the other: the part that whole passes do not finish."""
     shapely = pytest.importorskip("shapely")
@@ -355,6 +360,7 @@ def knots_of(rng: np.random.Generator, degree: int, count: int, *, clamped: bool
     return inner
 
 
+@pytest.mark.thin(4)
 @pytest.mark.parametrize("degree", range(1, 12))
 @pytest.mark.parametrize("clamped", [True, False])
 def test_spline_spans_are_the_spline(degree: int, clamped: bool) -> None:
@@ -407,7 +413,7 @@ CURVES = {
 }
 
 
-@pytest.mark.thin(3)
+@pytest.mark.thin(6)
 @pytest.mark.parametrize("control", CURVES.values(), ids=CURVES.keys())
 @pytest.mark.parametrize("weights", [(1, 1, 1, 1), (1, 3, 0.5, 2)])
 def test_unrolled_pieces_turn_one_way_and_their_support_is_that_of_the_curve(
@@ -459,7 +465,7 @@ def rose(size: float = 1.0) -> Contour:
     return Contour.from_pieces(turning(beziers))
 
 
-@pytest.mark.thin(3)
+@pytest.mark.thin(6)
 @pytest.mark.parametrize("made", [rose, lambda: ellipse().contour], ids=["spline", "ellipse"])
 @pytest.mark.parametrize("tolerance", [1e-2, 1e-4, 1e-6, 1e-8])
 def test_arcs_along_a_spline_keep_their_promise(made: Callable[[], Contour], tolerance: float) -> None:
@@ -475,6 +481,7 @@ def test_arcs_along_a_spline_keep_their_promise(made: Callable[[], Contour], tol
     assert back.max() <= tolerance + 1e-10
 
 
+@pytest.mark.thin(3)
 @pytest.mark.parametrize("control", CURVES.values(), ids=CURVES.keys())
 def test_arcs_along_curves_with_inflections_cusps_and_vanishing_derivatives(control: list[tuple[float, float]]) -> None:
     curve = Beziers(np.array([control], dtype=float), np.ones((1, 4)))
@@ -484,7 +491,7 @@ def test_arcs_along_curves_with_inflections_cusps_and_vanishing_derivatives(cont
     assert off.max() <= 1e-7
 
 
-@pytest.mark.thin(2)
+@pytest.mark.slow
 @pytest.mark.parametrize("size", [2e-5, 2e4])
 def test_arcs_along_a_spline_are_as_close_on_a_cam_of_a_micrometre(size: float) -> None:
     contour = rose(size)

@@ -31,7 +31,7 @@ def points(arcs: Arcs) -> np.ndarray:
     return np.concatenate([scattered, np.zeros((1, 2)), *on])
 
 
-@pytest.mark.thin(2)
+@pytest.mark.thin(8)
 @pytest.mark.parametrize("bend", [0.0, 0.4, np.pi - 1e-9])
 @pytest.mark.parametrize("count", [3, 17, 150])
 @pytest.mark.parametrize("order", ["chain", "any", "twice"])

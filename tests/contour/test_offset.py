@@ -62,7 +62,7 @@ def test_a_spike_of_pieces_each_too_short_to_count():
     assert len(parallel(chain_of(few, np.zeros(8)), 2.0, 0.05)) == 5
 
 
-@pytest.mark.thin(3)
+@pytest.mark.thin(6)
 @pytest.mark.parametrize("distance", [0.7, -0.7, 1.3, -2.5])
 @pytest.mark.parametrize(
     "shape",

@@ -14,6 +14,7 @@ def circle(radius: float) -> Contour:
     return Contour.from_bulges(np.array([[radius, 0.0], [-radius, 0.0]]), np.ones(2))
 
 
+@pytest.mark.thin(3)
 @pytest.mark.parametrize("width", [20.0, 1.0, 0.03, 1e-4, 1e-7])
 def test_the_point_inside_a_ring_is_inside_however_thin_the_ring_is(width):
     """A grid of 24 by 24 points misses a ring of 0.03 mm."""

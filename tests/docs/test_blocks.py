@@ -85,13 +85,13 @@ def shown(text):
     return reading(root_key(source)).read(source, Path("shown.yaml"))
 
 
-@pytest.mark.thin(3)
+@pytest.mark.thin(4)
 @pytest.mark.parametrize("text", of("yaml", whole=True))
 def test_a_recipe_is_read(text):
     shown(text)
 
 
-@pytest.mark.thin(20)
+@pytest.mark.thin(40)
 @pytest.mark.parametrize("text", few(of("yaml", whole=True), 4))
 def test_a_recipe_is_made_and_passes(text):
     recipe = shown(text)
@@ -261,7 +261,7 @@ def scripts():
     return sorted({b.page for b in blocks() if b.language == "python"} - RUN_ELSEWHERE)
 
 
-@pytest.mark.thin(2)
+@pytest.mark.thin(4)
 @pytest.mark.parametrize("page", few(scripts(), 3))
 def test_python_runs(page, workshop, monkeypatch):
     monkeypatch.chdir(workshop)
@@ -288,7 +288,7 @@ def called():
     return [pytest.param(lines, id=page, marks=slow.get(lines[-1][0], ())) for page, lines in found.items() if lines]
 
 
-@pytest.mark.thin(2)
+@pytest.mark.thin(4)
 @pytest.mark.parametrize("lines", few(called(), 3))
 def test_commands_of_shell_blocks_run(lines, workshop, monkeypatch, capsys):
     monkeypatch.chdir(workshop)

@@ -96,12 +96,13 @@ def below_the_noise():
     yield Row("`p: 25 + (1e9 + cos(3*t)) - 1e9`", "a file within 1e-6 mm", said, "at least 2.74e-06 mm", "as stated")
 
 
-@pytest.mark.thin(16)
+@pytest.mark.slow
 @pytest.mark.parametrize("name", names(cases(), SLOW))
 def test_it_holds_and_the_page_shows_it(name):
     shown_as_measured(__name__, name)
 
 
+@pytest.mark.slow
 def test_without_the_formulas_rounding_the_bound_would_be_false():
     """A polygon within 4e-6 mm of a noisy p: its bound must hold against the exact one, which takes in the noise."""
     asked = recipe("kind: support\np: 25 + (1e9 + cos(3*t)) - 1e9", files="{dxf: {as: arcs}}", tolerance=4e-6)

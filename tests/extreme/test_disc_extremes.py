@@ -96,7 +96,7 @@ def recipe(touching, base, rows, motion_error=None):
     return load_text(touching.recipe(base, rows, more), "cam.yaml")
 
 
-@pytest.mark.thin(20)
+@pytest.mark.slow
 @pytest.mark.parametrize("name", PASSING)
 def test_it_passes(name: str, tmp_path: Path) -> None:
     touching, base, rows = PASSING[name]
@@ -130,7 +130,7 @@ def test_it_is_refused(name: str) -> None:
     assert error.line > 0
 
 
-@pytest.mark.thin(4)
+@pytest.mark.thin(8)
 @pytest.mark.parametrize("name", FAILING)
 def test_it_fails_before_a_file_is_made(name: str) -> None:
     touching, base, rows, check = FAILING[name]

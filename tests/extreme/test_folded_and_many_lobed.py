@@ -315,6 +315,7 @@ def test_it_holds_and_the_page_shows_it(name):
     shown_as_measured(__name__, name)
 
 
+@pytest.mark.thin(2)
 @pytest.mark.parametrize("share", [0.9, 0.99, 0.995])
 def test_feet_across_a_fold(share):
     """Points of the contour itself lie on it: seen from the other side of the fold they once lay 8.6 mm outside."""

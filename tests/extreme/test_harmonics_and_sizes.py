@@ -112,7 +112,7 @@ def tightest(form, tolerance):
     yield Row(f"{form} of a cam that reaches 60 mm", f"{tolerance:g} mm", files.used(), 1.0, why)
 
 
-@pytest.mark.thin(20)
+@pytest.mark.slow
 @pytest.mark.parametrize("name", names(cases(), SLOW))
 def test_it_holds_and_the_page_shows_it(name):
     shown_as_measured(__name__, name)

@@ -55,6 +55,7 @@ def points_of(entity):
     return np.array([(*v.dxf.location.xyz[:2], v.dxf.get("bulge", 0.0)) for v in entity.vertices])
 
 
+@pytest.mark.thin(3)
 @pytest.mark.parametrize("version", VERSIONS)
 @pytest.mark.parametrize("outline", [POLYGON, ARCS], ids=["polygon", "arcs"])
 def test_one_closed_polyline_with_every_digit(tmp_path, version, outline):
@@ -70,6 +71,7 @@ def test_one_closed_polyline_with_every_digit(tmp_path, version, outline):
     assert np.array_equal(rows[:, 2], ARCS.bulges if outline is ARCS else np.zeros(40))
 
 
+@pytest.mark.thin(3)
 @pytest.mark.parametrize("version", MODERN)
 @pytest.mark.parametrize("spline", [closed_spline(), periodic_spline(11, 5)], ids=["clamped", "periodic"])
 def test_spline_by_control_points_and_knots(tmp_path, version, spline):
@@ -149,6 +151,7 @@ def extents(drawing):
     return (*low[:2], *high[:2])
 
 
+@pytest.mark.thin(3)
 @pytest.mark.parametrize("outline", [POLYGON, ARCS, closed_spline(), periodic_spline()])
 @pytest.mark.parametrize("mm", [1.0, 25.4])
 def test_extents_are_those_of_the_curve(tmp_path, outline, mm):

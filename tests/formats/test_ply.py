@@ -85,6 +85,7 @@ def test_the_same_bytes_twice(tmp_path: Path) -> None:
     assert head[:3] == ["ply", "format binary_little_endian 1.0", "comment camgeo: in mm, z upwards. cam"]
 
 
+@pytest.mark.slow
 def test_kerf_inches_and_a_file_for_each_body(tmp_path: Path) -> None:
     recipe = camgeo.load(
         "name: cam\nunits: inch\ncam: {kind: support, p: 1 + 0.08*cos(3*t)}\npart: {thickness: 0.3, bore: 0.5}\n"
@@ -147,6 +148,7 @@ def test_planted_faults_are_caught(tmp_path):
         assert failures(binary(tmp_path / f"{name}.ply", corners), recipe, design) >= least, name
 
 
+@pytest.mark.thin(2)
 @pytest.mark.parametrize("form", ["text", "<f8", "<f4", ">f8"])
 def test_every_form_is_read(tmp_path: Path, form: str) -> None:
     path = tmp_path / "ring.ply"

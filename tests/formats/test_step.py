@@ -103,6 +103,7 @@ def kinds_in(path):
 # --- what is written ------------------------------------------------------------------------------------------------
 
 
+@pytest.mark.thin(2)
 @kernel
 @pytest.mark.parametrize("form", ["arcs", "spline"])
 def test_a_plain_disc_in_each_form(tmp_path, form):
@@ -164,6 +165,7 @@ def test_inches_are_written_as_millimetres(tmp_path):
     assert solid.volume == pytest.approx(25.4**3 * 0.5 * math.pi * (1 - 8 * 0.05**2 / 2 - 1 / 64), rel=1e-4)
 
 
+@pytest.mark.slow
 @kernel
 @pytest.mark.parametrize("form", few(["arcs", "spline"], 2))
 def test_a_contour_with_corners(tmp_path, form):
@@ -206,6 +208,7 @@ def test_names_and_header_and_the_same_bytes(tmp_path):
     assert (other / path.name).read_bytes() == first
 
 
+@pytest.mark.slow
 @kernel
 def test_settings_of_the_kernel_are_as_they_were(tmp_path):
     from OCP.Interface import Interface_Static
@@ -424,6 +427,7 @@ def test_another_version_of_the_kernel_is_told(monkeypatch):
         need_kernel()
 
 
+@pytest.mark.slow
 @kernel
 def test_the_command_verifies_a_file_of_another_name(tmp_path, capsys):
     recipe = tmp_path / "cam.yaml"

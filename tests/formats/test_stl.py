@@ -122,7 +122,7 @@ def area(points):
     return sum(x[i - 1] * y[i] - x[i] * y[i - 1] for i in range(len(x))) / 2
 
 
-@pytest.mark.thin(3)
+@pytest.mark.thin(6)
 @pytest.mark.parametrize("shape", SHAPES)
 @pytest.mark.parametrize("bore", [None, 8.0])
 def test_solid_is_closed_oriented_and_of_exact_volume(tmp_path, shape, bore):
@@ -197,6 +197,7 @@ def test_any_star_shaped_contour(tmp_path_factory, corners, with_bore, data):
     assert volume(records) == 3 * (area(points) - hole)
 
 
+@pytest.mark.thin(4)
 @pytest.mark.parametrize("triangles_of", [disc, clip_region])
 @pytest.mark.parametrize("n", [3, 4, 5, 6, 7, 8, 33, 100])
 def test_disc_of_any_count(triangles_of, n):
@@ -242,6 +243,7 @@ def test_sides_are_exact(points, kind):
     assert found == (exact > 0) - (exact < 0)
 
 
+@pytest.mark.thin(3)
 @pytest.mark.parametrize(
     ("points", "bore", "message"),
     [
@@ -308,6 +310,7 @@ class TestTolerance:
         with pytest.raises(ToleranceError, match="STL: the thickness would be off by"):
             write_stl(tmp_path / "cam.stl", Polygon(SQUARE, NONE), thickness=1000.1, tolerance=1e-6)
 
+    @pytest.mark.thin(4)
     @pytest.mark.parametrize("diameter", [3.0, 10.0, 12.7, 50.0])
     @pytest.mark.parametrize("tolerance", [0.1, 0.01, 1e-3, 1e-4, 1e-5])
     def test_bore_straddles_its_circle(self, tmp_path, diameter, tolerance):

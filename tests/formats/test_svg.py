@@ -108,6 +108,7 @@ def test_every_form_is_the_cam_by_a_second_reader_too(tmp_path, form, rotation):
     assert {"arcs": "A", "polyline": "L", "spline": "C"}[form] in data
 
 
+@pytest.mark.slow
 def test_drawing_is_at_true_size_and_says_so(engraved):
     _, design, path, _, _ = engraved
     text = path.read_text()
@@ -228,7 +229,7 @@ def test_what_stands_on_no_layer_is_cut_too(tmp_path):
     assert hole.area == pytest.approx(np.pi)
 
 
-@pytest.mark.costly("a verdict for each arc")
+@pytest.mark.slow
 def test_a_flipped_flag_is_caught_on_every_arc(tmp_path):
     recipe, design, path, _, _ = made(tmp_path, part="{bore: 12}")
     text = path.read_text()
@@ -256,6 +257,7 @@ def test_the_wrong_sense_of_turning_is_caught(tmp_path):
 # --- drawings of any origin -------------------------------------------------------------------------------------------
 
 
+@pytest.mark.thin(4)
 @pytest.mark.parametrize(
     "body",
     [

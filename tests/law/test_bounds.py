@@ -25,6 +25,7 @@ class Counted:
         return self.function(t)
 
 
+@pytest.mark.thin(2)
 @pytest.mark.parametrize("margin", [1e-1, 1e-4, 1e-8, 1e-12])
 def test_a_maximum_just_below_a_limit_is_proved_at_little_cost(margin):
     counted = Counted(lambda t: sin(t) + t * 0.0)

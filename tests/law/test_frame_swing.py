@@ -120,7 +120,7 @@ def case(request):
     return request.param
 
 
-@pytest.mark.thin(2)
+@pytest.mark.thin(8)
 def test_the_lift_is_that_of_the_loop(case):
     with mp.workdps(30):
         exact, lift = Exact(case), case.lift()
@@ -130,7 +130,7 @@ def test_the_lift_is_that_of_the_loop(case):
             assert p == pytest.approx([float(x) for x in wanted], abs=1e-11)
 
 
-@pytest.mark.thin(4)
+@pytest.mark.thin(8)
 def test_the_mechanism_swings_by_the_law_all_round(case):
     mechanism, law = case.mechanism(), case.law()
     phi = np.linspace(0.0, 2 * math.pi, 60, endpoint=False)

@@ -92,6 +92,7 @@ def test_peaks_are_the_published_ones(name):
         assert ours == pytest.approx(PUBLISHED[name], rel=4e-16)
 
 
+@pytest.mark.thin(3)
 @pytest.mark.parametrize("name", sorted(PUBLISHED))
 def test_every_derivative_is_that_of_the_textbook_formula(name):
     motion = named(name).motion

@@ -46,6 +46,7 @@ def test_sides_at_a_knot():
     assert f.derivatives(math.pi, 1, -1)[1, 0] == pytest.approx(-1, abs=1e-15)
 
 
+@pytest.mark.thin(4)
 @pytest.mark.parametrize("turns", [-1000, -3, -1, 0, 1, 2, 1000])
 @pytest.mark.parametrize("ulps", [-3, 0, 3])
 @pytest.mark.parametrize("knot", [0.0, math.pi])

@@ -46,6 +46,7 @@ def area(angles, breadth, rounding):
     return straight + segments + math.pi * inner * rounding + math.pi * rounding**2
 
 
+@pytest.mark.thin(2)
 @pytest.mark.parametrize("sides", [5, 7, 21])
 def test_equal_angles_are_the_regular_polygon(sides):
     own = lift_reuleaux(sides, 50.0, 4.0, (3.0, -2.0), [math.pi / sides] * (sides - 3))

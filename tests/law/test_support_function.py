@@ -184,6 +184,7 @@ def test_a_programme_of_another_angle_is_the_callers_fault():
 # --- shapes ---
 
 
+@pytest.mark.thin(2)
 @pytest.mark.parametrize("sides", [3, 5, 7, 9])
 def test_reuleaux_polygons_are_arcs_about_their_corners(sides):
     breadth, rounding = 50.0, 4.0
@@ -235,6 +236,7 @@ def test_reuleaux_polygons_that_are_none(sides, rounding, message):
     assert caught.value.message == message
 
 
+@pytest.mark.thin(2)
 @pytest.mark.parametrize("cusps", [3, 5])
 def test_hypocycloid_is_parallel_to_one(cusps):
     lift = lift_hypocycloid(cusps, 2.0, 200.0)
@@ -321,6 +323,7 @@ MP = {
 }
 
 
+@pytest.mark.thin(3)
 @pytest.mark.parametrize("figure", sorted(AYGAHOGLU))
 def test_derivatives_of_the_papers_curves(figure):
     lift = lift_from_formula(Formula(AYGAHOGLU[figure]))
@@ -330,6 +333,7 @@ def test_derivatives_of_the_papers_curves(figure):
             assert lift.derivatives(t, 5)[:, 0] == pytest.approx(true, rel=1e-12, abs=1e-11)
 
 
+@pytest.mark.thin(3)
 @pytest.mark.parametrize("figure", sorted(AYGAHOGLU))
 def test_the_papers_curves_have_breadth_50(figure):
     lift = lift_from_formula(Formula(AYGAHOGLU[figure]), (16.0, 7.5))
@@ -343,6 +347,7 @@ def test_a_scale_is_the_unit_of_the_formula_and_not_of_the_pivot():
     assert inches.derivatives(0.0, 0)[0, 0] == pytest.approx(1.08 * 25.4 - 5)
 
 
+@pytest.mark.thin(4)
 @pytest.mark.parametrize(
     ("text", "breaks", "radius"),
     [
@@ -374,6 +379,7 @@ def test_one_sided_derivatives_at_a_switch():
         assert (right, left) == pytest.approx((2 * sense, -2 * sense), abs=1e-14)
 
 
+@pytest.mark.thin(3)
 @pytest.mark.parametrize(
     ("text", "message"),
     [
@@ -435,6 +441,7 @@ def test_an_error_of_the_formula_keeps_its_words():
 # --- proofs ---
 
 
+@pytest.mark.thin(3)
 @pytest.mark.parametrize("i", range(len(lifts())))
 def test_enclosures_hold(i):
     lift = lifts()[i]

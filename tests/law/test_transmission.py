@@ -94,7 +94,7 @@ def samples(law, count=500):
 # --- Wunderlich's equations ---
 
 
-@pytest.mark.thin(2)
+@pytest.mark.thin(4)
 @every_law
 def test_closing_equation(lam, mu, name):
     """W 7.1: the roller that stands where the other stood before sees a pitch curve that closes."""
@@ -109,7 +109,7 @@ def test_closing_equation(lam, mu, name):
     np.testing.assert_allclose(closing[0] / (4 * L**2 * math.sin(law.alpha) ** 2), 1, atol=1e-12)
 
 
-@pytest.mark.thin(3)
+@pytest.mark.thin(6)
 @every_law
 def test_affinity(lam, mu, name):
     """W 4.9: (phi, psi) -> (phi - psi + delta, -psi) maps the law onto itself, slope -psi'/(1 - psi') included."""
@@ -123,7 +123,7 @@ def test_affinity(lam, mu, name):
     np.testing.assert_allclose(law.psi_of_shaft(phi[0] + 2 * law.delta, 0)[0], psi[0], atol=1e-13)
 
 
-@pytest.mark.thin(2)
+@pytest.mark.thin(4)
 @every_law
 def test_the_parameter_of_a_polar_angle(lam, mu, name):
     law = made(lam, mu, name)
@@ -133,7 +133,7 @@ def test_the_parameter_of_a_polar_angle(lam, mu, name):
     np.testing.assert_allclose(image, -law.at(tau, 0)[1][0], atol=1e-14)  # W 4.4
 
 
-@pytest.mark.thin(6)
+@pytest.mark.thin(12)
 @every_law
 def test_chords_close_after_two_lambda_steps(lam, mu, name):
     """W section 6: chords of length 2 l sin(alpha), stepped round the pitch curve from anywhere, close."""
@@ -152,6 +152,7 @@ def test_chords_close_after_two_lambda_steps(lam, mu, name):
     np.testing.assert_allclose(turned[-1] - turned[0], TURN * mu, atol=1e-11)
 
 
+@pytest.mark.thin(4)
 @every_law
 def test_shaft_angle_rises_and_turns_back_nowhere(lam, mu, name):
     law = made(lam, mu, name)
@@ -165,7 +166,7 @@ def test_shaft_angle_rises_and_turns_back_nowhere(lam, mu, name):
     assert psi[0] == pytest.approx(psi[1], abs=1e-14)
 
 
-@pytest.mark.thin(3)
+@pytest.mark.thin(6)
 @every_law
 def test_the_law_over_the_shaft_angle_is_the_parametric_one(lam, mu, name):
     law = made(lam, mu, name)
@@ -181,7 +182,7 @@ def test_the_law_over_the_shaft_angle_is_the_parametric_one(lam, mu, name):
         np.testing.assert_allclose(over_shaft[k], true, atol=1e-9 * np.abs(true).max())
 
 
-@pytest.mark.thin(6)
+@pytest.mark.thin(12)
 @every_law
 def test_enclosures_hold(lam, mu, name):
     law = made(lam, mu, name)
@@ -197,7 +198,7 @@ def test_enclosures_hold(lam, mu, name):
     assert psi.order == 4
 
 
-@pytest.mark.thin(3)
+@pytest.mark.thin(6)
 @every_law
 def test_breaks_steady_stretches_and_known_arcs(lam, mu, name):
     law = made(lam, mu, name)
@@ -461,6 +462,7 @@ def test_ratios_that_wunderlich_excludes(lam, mu, arm, field, message):
         assert (caught.value.field, caught.value.message) == (field, message)
 
 
+@pytest.mark.thin(4)
 @pytest.mark.parametrize(
     ("build", "field", "at", "message"),
     [
@@ -599,6 +601,7 @@ def test_laws_that_no_cam_has(build, field, at, message):
     assert caught.value.at_deg == (at if at is None else pytest.approx(at, abs=1e-4))
 
 
+@pytest.mark.thin(3)
 @pytest.mark.parametrize(("lam", "mu"), [(3, 1), (4, 1), (4, 3), (5, 3), (7, 5)])
 def test_a_cosine_can_be_turned_through_up_to_two_lambdaths_of_the_square(lam, mu):
     """psi' < 1 with D = m^2 cos(lam t) is 4 D^2 + D'^2 < 4 l^4, that is m^2/l^2 < 2/lam for lam > 2."""

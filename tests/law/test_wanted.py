@@ -85,6 +85,7 @@ def test_three_harmonics_by_mpmath():
     assert found.least <= found.error <= found.least * (1 + 1e-6)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("lam", "name", "harmonics"),
     [
@@ -135,6 +136,7 @@ def test_a_figure_too_small_is_not_proved():
         proved_error(replace(found, error=found.error / 4), wanted)
 
 
+@pytest.mark.slow
 def test_a_law_with_corners():
     """Constant velocity: refused of a cam that should follow it exactly, and followed by a series."""
     rise = Segment("rise", math.radians(22.5), math.radians(3), law("constant-velocity"))

@@ -48,6 +48,7 @@ def mirrored(jet):
     return W - jet
 
 
+@pytest.mark.thin(4)
 @pytest.mark.parametrize("linkage", LINKAGES)
 @pytest.mark.parametrize("cam", [CAM, BROAD])
 def test_loop_closes(linkage, cam):
@@ -78,7 +79,7 @@ def test_loop_closes(linkage, cam):
     assert np.abs(np.diff(frame)).max() < 0.2
 
 
-@pytest.mark.thin(3)
+@pytest.mark.thin(6)
 @pytest.mark.parametrize("linkage", LINKAGES)
 def test_derivatives_of_the_joint_are_those_of_the_loop(linkage):
     """D = X u + Y n and the rocker's circle, each differentiated by jets of its own."""
@@ -95,6 +96,7 @@ def test_derivatives_of_the_joint_are_those_of_the_loop(linkage):
             assert ours.derivatives() == pytest.approx(theirs.derivatives(), rel=1e-10, abs=1e-10)
 
 
+@pytest.mark.thin(2)
 @pytest.mark.parametrize("lengths", [(80.0, 70.0, 105.0), (70.0, 65.0, 90.0)])
 def test_both_roots_of_the_half_angle_equation(lengths):
     """AS 14-18: (+) is the open assembly of Figure 7, (-) the crossed one."""

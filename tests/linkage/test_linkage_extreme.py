@@ -89,7 +89,7 @@ def posed(rng, assembly, frame_of):
             return ("four", assembly, (float(r1), float(r3), float(r4)), W, motion(rng, x, y, r3))
 
 
-@pytest.mark.thin(6)
+@pytest.mark.slow
 @pytest.mark.parametrize("assembly", ASSEMBLIES)
 @pytest.mark.parametrize("beside", [0.0, 1e-15, -1e-12, 1e-8])
 def test_dead_centres(assembly, beside):
@@ -115,7 +115,7 @@ def test_transmission_angle_near_0(assembly, angle):
     hold([posed(rng, assembly, lambda theta4: angle - theta4 + rng.choice([0, math.pi])) for _ in range(8)])
 
 
-@pytest.mark.thin(12)
+@pytest.mark.thin(24)
 @pytest.mark.parametrize("assembly", few(ASSEMBLIES, 2))
 @pytest.mark.parametrize("power", range(3, 16))
 def test_discriminant_down_to_1e_15(assembly, power):
@@ -165,7 +165,7 @@ def test_links_from_a_millionth_to_a_million_breadths(assembly):
     hold(cases)
 
 
-@pytest.mark.thin(6)
+@pytest.mark.slow
 @pytest.mark.parametrize("assembly", ASSEMBLIES)
 @pytest.mark.parametrize("power", [-6.0, -9.0, -15.0, -300.0, -math.inf])
 def test_shaft_at_the_edge_of_the_cam(assembly, power):

@@ -123,7 +123,7 @@ class Polygon:
         return 0.5 * (low + high)
 
 
-@pytest.mark.thin(2)
+@pytest.mark.thin(4)
 @pytest.mark.parametrize("kind", ["four-bar", "slider-crank", "four-bar, joint off", "slider-crank, joint off"])
 def test_a_polygon_in_a_rigid_frame(kind):
     """At given shaft angles, where only the direction of the frame is unknown."""
@@ -149,7 +149,7 @@ def test_a_polygon_in_a_rigid_frame(kind):
 # The shaft angle
 
 
-@pytest.mark.thin(2)
+@pytest.mark.thin(8)
 def test_shaft_angle_and_its_inverse(driven):
     shaft = np.linspace(-20, 20, 777)
     theta = driven.relative(shaft)
@@ -163,6 +163,7 @@ def test_shaft_angle_and_its_inverse(driven):
     assert np.abs(driven.output(shaft) - driven.at(theta, 0).output[0]).max() < 1e-14 * size
 
 
+@pytest.mark.thin(2)
 @pytest.mark.parametrize("loop", [LINKAGES["four-bar"], InvertedSliderCrank(80.0, 0.0)], ids=["four-bar", "yoke"])
 def test_either_limit_of_a_loop_is_followed_by_itself(monkeypatch, loop):
     """The nearer of two limits has a kink where they change places, on which cells would be halved thirty times."""
@@ -180,7 +181,7 @@ def test_either_limit_of_a_loop_is_followed_by_itself(monkeypatch, loop):
     assert {rows for rows, _ in counts} == {2}
 
 
-@pytest.mark.thin(2)
+@pytest.mark.thin(8)
 def test_derivatives_over_the_shaft_are_those_of_the_output_at_shaft_angles(driven):
     shaft, step = np.linspace(0.1, 6.1, 13), 1e-3
 
@@ -247,6 +248,7 @@ def close(of, theta):
     return theta[of.linkage.margins(s, s1, of.breadth).min(axis=0) > 1e-3]
 
 
+@pytest.mark.slow
 @settings(max_examples=examples(60))
 @given(linkages, pivots)
 def test_the_line_of_force_pushes_the_output_on(linkage, pivot):
@@ -273,6 +275,7 @@ def test_the_line_of_force_pushes_the_output_on(linkage, pivot):
     assert np.abs(lever)[certain] == pytest.approx(sine[certain], abs=1e-6)
 
 
+@pytest.mark.slow
 @settings(max_examples=examples(60))
 @given(linkages, pivots)
 def test_the_rate_of_the_shaft_is_the_lever_of_the_force_on_the_output(linkage, pivot):
@@ -367,7 +370,7 @@ def test_what_does_not_turn_says_where():
         mechanism(InvertedSliderCrank(20.0, 0.0)).relative(0.3)
 
 
-@pytest.mark.thin(3)
+@pytest.mark.thin(6)
 @pytest.mark.parametrize("gap", few([1e-3, 1e-6, 1e-9, 1e-13, 0.0, -1e-13, -1e-9, -1e-6], 2))
 @pytest.mark.parametrize("limit", ["drawn in", "stretched"])
 def test_mobility_close_to_a_limit_position(gap, limit):
@@ -389,7 +392,7 @@ def test_mobility_close_to_a_limit_position(gap, limit):
 # Figures
 
 
-@pytest.mark.thin(6)
+@pytest.mark.thin(12)
 def test_figures_against_dense_samples(driven):
     figures = driven.figures()
     theta = np.linspace(0, TURN, 20001)
@@ -442,6 +445,7 @@ def test_figures_are_those_of_the_extremes_module():
     assert of.figures().velocity_relative.relative == pytest.approx(found.worst[1], abs=1e-6)
 
 
+@pytest.mark.slow
 def test_transmission_angles_from_the_positions():
     of = mechanism()
     figures = of.figures()

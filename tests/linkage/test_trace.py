@@ -4,7 +4,7 @@ import math
 
 import numpy as np
 import pytest
-import shapely
+from support.heavy import shapely
 
 from kin.law.formula.formula import Formula
 from kin.law.from_formula import lift_from_formula
@@ -49,6 +49,7 @@ def test_a_point_of_a_slide_runs_on_a_straight_line() -> None:
     assert np.ptp(traced(slider, "output", (0.0, 4.0), THETA).y) < 1e-12
 
 
+@pytest.mark.thin(2)
 @pytest.mark.parametrize("linkage", [FourBar(80.0, 70.0, 105.0, "crossed"), InvertedSliderCrank(90.0, 0.0)])
 def test_a_coupler_curve_by_differences(linkage) -> None:
     """Of places alone, over the shaft angle; curvature by three points of the path."""
@@ -65,6 +66,7 @@ def test_a_coupler_curve_by_differences(linkage) -> None:
     assert here.curvature[fast] == pytest.approx(((dx * ddy - dy * ddx) / np.hypot(dx, dy) ** 3)[fast], abs=1e-4)
 
 
+@pytest.mark.thin(2)
 @pytest.mark.parametrize("tolerance", [0.1, 0.001])
 def test_chords_stay_within_the_tolerance(tolerance) -> None:
     line = flattened(FOUR_BAR, "coupler", (40.0, 10.0), tolerance)

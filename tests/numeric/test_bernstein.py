@@ -18,6 +18,7 @@ def exact(row, t):
     return sum(Fraction(c) * comb(k, i) * t**i * (1 - t) ** (k - i) for i, c in enumerate(row))
 
 
+@pytest.mark.thin(3)
 @pytest.mark.parametrize("degree", [0, 1, 3, 25, 49])
 def test_values_are_exact_to_rounding_and_at_both_ends_to_the_bit(degree):
     rng = np.random.default_rng(degree)

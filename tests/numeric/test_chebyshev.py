@@ -40,6 +40,7 @@ def test_a_polynomial_of_the_degree_is_its_own_series() -> None:
     assert np.abs(series[9:]).max() < 1e-14
 
 
+@pytest.mark.thin(2)
 @pytest.mark.parametrize("count", [7, 5000])  # either way of summing
 def test_values_derivative_and_integral_of_an_exponential(count: int) -> None:
     x = np.linspace(-1.0, 1.0, count)

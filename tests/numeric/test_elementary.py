@@ -103,7 +103,7 @@ def series(exact, t: float) -> list[mpmath.mpf]:
     return mpmath.taylor(exact, mpmath.mpf(t), ORDER)
 
 
-@pytest.mark.thin(3)
+@pytest.mark.thin(6)
 @pytest.mark.parametrize("name", FUNCTIONS)
 def test_every_coefficient_is_right(name: str) -> None:
     function, exact, (least, greatest), ulps = FUNCTIONS[name]
@@ -115,7 +115,7 @@ def test_every_coefficient_is_right(name: str) -> None:
         assert max(abs(mpmath.mpf(a) - b) for a, b in zip(found[:, i], true, strict=True)) <= ulps * 2.0**-53 * size
 
 
-@pytest.mark.thin(3)
+@pytest.mark.thin(6)
 @pytest.mark.parametrize("name", FUNCTIONS)
 def test_a_ball_jet_holds_the_series_of_every_point_inside(name: str) -> None:
     function, exact, (least, greatest), _ = FUNCTIONS[name]
@@ -133,6 +133,7 @@ def test_a_ball_jet_holds_the_series_of_every_point_inside(name: str) -> None:
             assert low[k, i] <= c * math.factorial(k) <= high[k, i]
 
 
+@pytest.mark.thin(4)
 @pytest.mark.parametrize("name", FUNCTIONS)
 def test_balls_shrink_with_the_interval(name: str) -> None:
     """The radius goes to what half the interval times the next derivative asks for, but for a factor."""
@@ -271,6 +272,7 @@ def test_whole_powers_at_zero() -> None:
     np.testing.assert_allclose((Jet.variable(-2.0, 3) ** -1).c[:, 0], [-0.5, -0.25, -0.125, -0.0625])
 
 
+@pytest.mark.thin(4)
 @pytest.mark.parametrize(
     ("operation", "words"),
     [

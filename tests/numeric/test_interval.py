@@ -124,6 +124,7 @@ def test_a_table_of_powers_holds_every_result(a: float, wa: float, part: float) 
     assert all(holds(table[k], p**k) for k in range(7))
 
 
+@pytest.mark.thin(4)
 @pytest.mark.parametrize("name", FUNCTIONS)
 @given(parts, widths, parts)
 @settings(max_examples=examples(60))
@@ -134,6 +135,7 @@ def test_functions_hold_every_value(name: str, place: float, width: float, part:
     assert holds(function(between(a, b)), exact(mpmath.mpf(inside(a, b, part))))
 
 
+@pytest.mark.thin(4)
 @pytest.mark.parametrize("name", FUNCTIONS)
 def test_functions_of_single_numbers_are_off_by_less_than_they_are_allowed(name: str) -> None:
     """The allowance of 8 ulp is an assumption on numpy; this measures it (about 0.5 ulp is usual)."""
@@ -147,6 +149,7 @@ def test_functions_of_single_numbers_are_off_by_less_than_they_are_allowed(name:
         assert rad <= 40 * 2.0**-53 * abs(float(true)) + 1e-299
 
 
+@pytest.mark.thin(2)
 @pytest.mark.parametrize("quarter", range(4))
 def test_extrema_are_not_missed_where_the_turns_of_a_large_angle_are_rounded(quarter: int) -> None:
     """Intervals that only just reach over a maximum or minimum, near 1e15 where a turn is known to 0.1 at best."""

@@ -21,7 +21,7 @@ def test_rows_that_cannot_be_met_are_missed_by_the_least():
     assert found.missed == pytest.approx(1.0, abs=1e-14)
 
 
-@pytest.mark.thin(3)
+@pytest.mark.thin(6)
 @pytest.mark.parametrize("seed", range(24))
 def test_the_least_value_is_that_of_another_solver(seed):
     pytest.importorskip("scipy")

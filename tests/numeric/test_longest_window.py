@@ -294,6 +294,7 @@ def test_bands_that_cannot_be(band):
         dwells(lambda x, _: np.sin(x)[None], [], band)
 
 
+@pytest.mark.slow
 def test_a_band_close_to_rounding_is_still_resolved():
     f, band = wave([1.0, 0.2], [0.3, 0.0]), 1e-10
     found = dwells(f, [], band)
@@ -340,6 +341,7 @@ def test_flanks_along_which_the_slope_rises_or_falls_are_not_searched(monkeypatc
     assert sum(counts) < 300  # each range of starts at both its ends, none of them halved
 
 
+@pytest.mark.slow
 def test_a_band_from_a_valley_to_a_rest_is_settled(monkeypatch):
     """Where f is flat at both ends no part of the slopes settles a range, which was halved without end."""
     calls, ends = [], _Family.ends

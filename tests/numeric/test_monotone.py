@@ -100,6 +100,7 @@ def test_extremes_at_ends_inside_and_at_a_corner_nobody_declared():
     assert place == pytest.approx(1.234, abs=1e-8)
 
 
+@pytest.mark.thin(3)
 @pytest.mark.parametrize("share", [1e-5, 1e-3, 0.004])
 @pytest.mark.parametrize("side", [-1.0, 1.0])
 def test_a_corner_between_the_outermost_point_of_a_cell_and_its_end(side, share):
@@ -111,6 +112,7 @@ def test_a_corner_between_the_outermost_point_of_a_cell_and_its_end(side, share)
     assert place == pytest.approx(at, abs=1e-8)
 
 
+@pytest.mark.thin(4)
 @pytest.mark.parametrize("share", [1e-4, 2e-3, 0.0045])
 @pytest.mark.parametrize(("end", "side"), [(0, 1.0), (1, -1.0), (1, 1.0), (2, -1.0), (2, 1.0), (3, -1.0)])
 def test_a_corner_beside_a_break_or_an_end_of_the_range(end, side, share):
@@ -124,6 +126,7 @@ def test_a_corner_beside_a_break_or_an_end_of_the_range(end, side, share):
     assert of.at(piece, beside) - level == pytest.approx([1.3e-5, 0.0, 0.7e-5], abs=1e-9)
 
 
+@pytest.mark.thin(2)
 @pytest.mark.parametrize("count", [22, 29, 47])
 def test_corners_that_nobody_declared_are_all_found(count):
     of = cut(lambda x: np.abs(np.sin(0.5 * count * (x - 0.01))))

@@ -63,6 +63,7 @@ def coefficients(function: Callable[[Any], Any], places: np.ndarray, radius: flo
     return rows
 
 
+@pytest.mark.thin(4)
 @pytest.mark.parametrize("name", list(FUNCTIONS))
 def test_coefficients(name: str) -> None:
     function, known, at, radius = FUNCTIONS[name]
@@ -97,6 +98,7 @@ def intervals(count: int) -> tuple[np.ndarray, np.ndarray]:
     return low, low + wide
 
 
+@pytest.mark.thin(5)
 @pytest.mark.parametrize("count", [1, 2, 6, 22, 96])
 def test_polynomials_over_intervals(count: int) -> None:
     """Bounds hold what mpmath gives at random places, and are as tight as Horner's scheme on series."""

@@ -30,10 +30,12 @@ def exported(folder: Path, recipe: str, *more: str) -> int:
     return main(["export", str(path), "--out", str(folder / "out"), *more])
 
 
+@pytest.mark.slow
 def test_shaft_on_the_contour_has_no_base_circle(tmp_path: Path) -> None:
     assert exported(tmp_path, "cam: {kind: support, p: '25', shaft: [25, 0]}\npart: {thickness: 8}\n" + FILES) == 0
 
 
+@pytest.mark.thin(2)
 @pytest.mark.parametrize("undercut", ["refuse", "trim"])
 @pytest.mark.parametrize("p", ["8 + cos(3*t)", "0*t"])
 def test_a_radius_of_curvature_that_is_just_0_fails_its_check(
@@ -64,6 +66,7 @@ def test_an_impossible_stl_is_refused_before_anything_is_fitted(
     assert "single precision" in capsys.readouterr().err
 
 
+@pytest.mark.slow
 def test_a_flat_pair_is_not_told_to_enlarge_a_base_radius(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     assert exported(tmp_path, "cam: {kind: flat-pair, ratio: 3, arm: 60, delta: {cos: {1: 2340}}}\n") == 1
     said = capsys.readouterr().out
@@ -141,6 +144,7 @@ def test_a_file_that_does_not_fit_is_told_in_the_words_of_the_system(tmp_path: P
     assert not (tmp_path / "out" / "cam").exists()
 
 
+@pytest.mark.slow
 @pytest.mark.skipif(sys.platform != "linux", reason="the killed function reaches the workers by fork")
 def test_a_killed_process_is_told_for_each_recipe(
     tmp_path: Path, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch

@@ -93,6 +93,7 @@ def test_the_report_has_what_its_contract_names(exported: tuple[Path, dict]) -> 
     assert report["follower"] == "square frame"
 
 
+@pytest.mark.slow
 def test_the_paper_s_dwell_over_both_angles_and_from_the_file(exported: tuple[Path, dict]) -> None:
     # AS after Figure 9: approximately 45 degrees around 3 pi/2 of the relative angle
     dwells = exported[1]["linkage"]["dwells"]
@@ -223,7 +224,6 @@ def test_an_output_that_stands_still_but_for_rounding_is_one_long_dwell(tmp_path
 
 
 @pytest.mark.slow
-@pytest.mark.thin(2)
 @pytest.mark.parametrize(("over", "length"), [("shaft", 37.05), ("relative", 45.17)])
 def test_the_dwell_over_the_angle_asked_for_comes_first(over: str, length: float) -> None:
     report = pipeline.check(recipe("at_least: 36", f"over: {over}")).report
@@ -266,6 +266,7 @@ def test_what_cannot_be_is_refused(old: str, new: str, words: str, tmp_path: Pat
     assert not list(tmp_path.iterdir())
 
 
+@pytest.mark.slow
 def test_swings_that_are_lost_in_rounding_or_do_not_join() -> None:
     text = FOUR_BAR.replace("support", "constant-breadth").replace("dwell: {band: 0.1, at_least: 36}\n", "")
     text = text.replace(
@@ -281,6 +282,7 @@ def test_swings_that_are_lost_in_rounding_or_do_not_join() -> None:
         designed(recipe(text=text % torn))
 
 
+@pytest.mark.slow
 def test_what_would_bring_the_shaft_within_the_cam_does() -> None:
     by_law = FOUR_BAR.replace("support", "constant-breadth").replace("dwell: {band: 0.1, at_least: 36}\n", "")
     by_law = by_law.replace(

@@ -63,6 +63,7 @@ def test_a_file_that_fails_rejects_the_set_all_the_same(tmp_path):
     assert [folder.name for folder in (tmp_path / "out").iterdir()] == ["cam.rejected"]
 
 
+@pytest.mark.thin(2)
 @pytest.mark.usefixtures("bare")
 @pytest.mark.parametrize("command", ["export", "check"])
 def test_where_no_file_can_be_made_nothing_is_written(tmp_path, capsys, command):
@@ -91,6 +92,7 @@ def test_a_set_to_print_needs_them(tmp_path, capsys):
     assert SOLIDS in capsys.readouterr().err
 
 
+@pytest.mark.thin(2)
 @pytest.mark.parametrize("kind", NAMES)
 def test_the_library_says_why(tmp_path, monkeypatch, kind):
     monkeypatch.setitem(sys.modules, NAMES[kind], None)

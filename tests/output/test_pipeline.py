@@ -55,7 +55,7 @@ def test_there_are_recipes() -> None:
     assert len(RECIPES) >= 17
 
 
-@pytest.mark.thin(18)
+@pytest.mark.thin(36)
 @pytest.mark.parametrize("path", few(RECIPES, 3, first=1), ids=lambda path: path.stem)
 def test_every_shipped_recipe_exports_and_passes(path: Path, tmp_path: Path) -> None:
     recipe = load(path)
@@ -105,7 +105,6 @@ def test_every_shipped_recipe_exports_and_passes(path: Path, tmp_path: Path) -> 
 
 
 @pytest.mark.slow
-@pytest.mark.thin(2)
 @pytest.mark.parametrize("tolerance", [1e-9, 1e-10])
 def test_rollers_feel_a_spline_as_finely_as_it_is_drawn(tolerance: float) -> None:
     text = "{kind: double-roller, ratio: 2, arm: 55, roller_radius: 7, delta: {cos: {1: 130}, sin: {1: 60, 3: -14}}}"
@@ -130,7 +129,7 @@ def test_the_proof_leaves_less_than_a_fine_tolerance_permits() -> None:
     assert motion["remainder"] <= 0.1 * math.degrees(1e-10 / 60.0)
 
 
-@pytest.mark.thin(2)
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("arc", "tolerance"),
     [("3, arm: 29.5775, arc: {radius: 54.9153}", 2.172e-4), ("7/5, arm: 34.7435, arc: {radius: 55.2848}", 5.166e-4)],
@@ -142,6 +141,7 @@ def test_a_pair_whose_breaks_are_off_by_rounding_is_judged(arc: str, tolerance: 
     assert outcome.ok, [check for check in outcome.report["checks"] if not check["ok"]]
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("name", few(["as-figure-2a", "w-booth", "reuleaux-nine"], 3))
 def test_the_same_recipe_gives_the_same_bytes(name: str, tmp_path: Path) -> None:
     recipe = load(RECIPES[0].with_name(f"{name}.yaml"))
@@ -273,7 +273,7 @@ OF_DXF = "camgeo.fit.arcs camgeo.output.drawing ezdxf kin.read.drawing.dxf"
 OF_STL = "camgeo.fit.polygon camgeo.output.solid kin.judge.volume kin.read.mesh.stl"
 
 
-@pytest.mark.thin(2)
+@pytest.mark.slow
 @pytest.mark.parametrize(("kind", "own", "other"), [("stl", OF_STL, OF_DXF), ("dxf", OF_DXF, OF_STL)])
 def test_a_command_imports_its_scene_alone(kind: str, own: str, other: str, tmp_path: Path) -> None:
     recipe = RECIPES[0].with_name("shu-wu.yaml")
@@ -366,7 +366,7 @@ def test_a_file_of_the_recipes_own_name_is_judged_by_its_own_tolerance(tmp_path:
     assert {check["file"] for check in report["checks"] if not check["ok"]} == {"other.stl"}
 
 
-@pytest.mark.thin(2)
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("clearance", "rounding", "breadth", "told"),
     [

@@ -13,11 +13,11 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 from zipfile import ZipFile
 
-import ezdxf
 import numpy as np
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
+from support.heavy import ezdxf
 from support.kernel import kernel
 
 from camgeo.cli.main import main
@@ -120,7 +120,6 @@ def test_a_second_file_is_named_with_its_unit(made: Made) -> None:
 
 
 @pytest.mark.slow
-@pytest.mark.thin(4)
 @pytest.mark.parametrize("kind", DRAWN)
 def test_what_is_drawn_is_the_same_to_the_last_digits(kind: str, request: pytest.FixtureRequest) -> None:
     read: Callable[[Path], Any] = read_solid if kind == "step" else read_drawing
@@ -130,7 +129,7 @@ def test_what_is_drawn_is_the_same_to_the_last_digits(kind: str, request: pytest
     assert inches.contour.area == pytest.approx(millimetres.contour.area, rel=1e-13)
 
 
-@pytest.mark.thin(2)
+@pytest.mark.slow
 @pytest.mark.parametrize(
     "kind",
     [
@@ -204,6 +203,7 @@ def test_another_reader_of_meshes(made: Made) -> None:
     assert sizes[0] == pytest.approx(sizes[1], abs=TOLERANCE)
 
 
+@pytest.mark.slow
 @kernel
 def test_another_reader_of_steps(stepped: Made) -> None:
     from OCP.BRepGProp import BRepGProp
@@ -236,7 +236,7 @@ def test_the_words_of_a_program(made: Made) -> None:
     assert INCH * feeds[1] == pytest.approx(feeds[0], rel=1e-4)
 
 
-@pytest.mark.thin(4)
+@pytest.mark.slow
 @pytest.mark.parametrize("table", ["motion", "contacts", "polar", "inspection"])
 def test_the_columns_of_a_table(table: str, tmp_path: Path) -> None:
     rows = {}
@@ -319,6 +319,7 @@ def test_a_mesh_has_the_unit_of_its_request(made: Made, tmp_path: Path, capsys: 
     assert np.abs(surface.contour.vertices).max() > 35.0
 
 
+@pytest.mark.slow
 def test_an_inch_recipe_with_files_in_mm(tmp_path: Path) -> None:
     recipe = recipe_of("dxf", "csv", units="inch", own=("mm",))
     outcome = pipeline.export(recipe, tmp_path)

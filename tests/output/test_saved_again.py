@@ -46,7 +46,7 @@ def tightly(folder: Path, name: str, kind: str) -> tuple[Report, Path, float]:
     return made, folder / "cam" / f"cam.{kind}", held
 
 
-@pytest.mark.thin(6)
+@pytest.mark.slow
 @pytest.mark.parametrize("name", ["shu-wu", "disc-roller", "w-figure-9"])
 @pytest.mark.parametrize(("kind", "saved"), [("3mf", by_lib3mf), ("3mf", by_trimesh), ("stl", by_trimesh)])
 def test_a_mesh_that_is_saved_again_in_single_precision_passes(tmp_path, name, kind, saved):

@@ -123,7 +123,7 @@ def test_a_mark_where_the_ray_meets_no_metal_is_left_out():
 # --- walls ----------------------------------------------------------------------------------------------------------
 
 
-@pytest.mark.thin(2)
+@pytest.mark.thin(4)
 @pytest.mark.parametrize(
     ("part", "told"),
     [
@@ -160,7 +160,7 @@ def test_a_wall_that_is_asked_for_is_kept_or_refused_at_its_edge():
     assert "bore and dowel hole: 5 mm at (" in checks["wall"].detail
 
 
-@pytest.mark.thin(2)
+@pytest.mark.thin(4)
 @pytest.mark.parametrize(("count", "told"), [(6, ""), (7, "; and 1 more pair"), (8, "; and 2 more pairs")])
 def test_walls_that_are_too_thin_are_named_and_the_others_counted(count, told):
     _, checks = found(recipe_of(f"{{bore: 12, bolts: {{count: {count}, circle: 12, hole: 1}}}}"))
@@ -168,6 +168,7 @@ def test_walls_that_are_too_thin_are_named_and_the_others_counted(count, told):
     assert checks["wall"].detail.rpartition(")")[2] == told
 
 
+@pytest.mark.thin(2)
 @pytest.mark.parametrize(
     ("screw", "told"),
     [

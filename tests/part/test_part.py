@@ -83,6 +83,7 @@ def test_a_corner_too_small_for_a_file_is_refused_with_the_least(sides: int, uni
     assert report.ok, report.table()
 
 
+@pytest.mark.slow
 def test_the_pivot_of_an_arm_is_found_where_the_rows_cross_at_a_joint() -> None:
     """The nearest corner breaks a plane by rounding alone, however often that plane is added."""
     text = """

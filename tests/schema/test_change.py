@@ -94,6 +94,7 @@ def test_what_an_alias_shares_is_left_alone() -> None:
         set_value(source, "part.bore", 13)
 
 
+@pytest.mark.slow
 def test_any_scalar_of_the_shipped_recipes_can_be_replaced() -> None:
     dice = random.Random(7)
     assert len(RECIPES) >= 30
@@ -106,6 +107,7 @@ def test_any_scalar_of_the_shipped_recipes_can_be_replaced() -> None:
             assert [n.count("#") for n in new.lines].count(0) <= [o.count("#") for o in source.lines].count(0)
 
 
+@pytest.mark.thin(4)
 @pytest.mark.parametrize("path", RECIPES[::6], ids=lambda path: path.stem)
 def test_a_recipe_saved_is_the_same(path: Path, tmp_path: Path) -> None:
     load(path).save(tmp_path / path.name)

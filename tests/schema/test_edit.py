@@ -159,6 +159,7 @@ def test_what_is_not_finite_is_refused(x: float) -> None:
         with_values(TEXT, {"linkage.rocker": x})
 
 
+@pytest.mark.thin(4)
 @pytest.mark.parametrize("path", ["linkage.rockers", "linkage", "cam.kind", "cam.shaft", "cam.shaft[2]", "", "name"])
 def test_only_numbers_are_replaced(path: str) -> None:
     with pytest.raises(ValueError, match=f"no number at {re.escape(path)}"):
@@ -186,6 +187,7 @@ def test_a_section_goes_with_the_comments_in_it() -> None:
     assert remove_section(TEXT, "dwell") == TEXT
 
 
+@pytest.mark.thin(4)
 @pytest.mark.parametrize(
     ("text", "expected"),
     [
@@ -234,7 +236,7 @@ def test_what_is_no_yaml_is_refused() -> None:
 # --- marks ------------------------------------------------------------------------------------------------------------
 
 
-@pytest.mark.thin(3)
+@pytest.mark.thin(6)
 @pytest.mark.parametrize("path", few(SHIPPED, 3), ids=lambda path: path.stem)
 def test_every_section_of_a_shipped_recipe_can_go(path: Path) -> None:
     text = path.read_text(encoding="utf-8")

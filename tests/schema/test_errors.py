@@ -288,6 +288,7 @@ def test_yaml_that_a_recipe_does_not_use(body: str, message: str) -> None:
 FLAT_PAIR = "cam: {kind: flat-pair, ratio: 2, arm: 30, roller_radius: 3, arc: {radius: 50}}\n"
 
 
+@pytest.mark.thin(4)
 @pytest.mark.parametrize(
     ("body", "message"),
     [
@@ -569,6 +570,7 @@ ODD = "give an odd whole number from 3 to 99"
 MOTION = "cam: {kind: constant-breadth, base_radius: 40, motion: [{rise: 20, over: 180, law: LAW}]}"
 
 
+@pytest.mark.thin(4)
 @pytest.mark.parametrize(
     ("body", "messages"),
     [
@@ -799,6 +801,7 @@ CHOOSE = "give a format, or a mapping with one format such as {dxf: {as: spline}
 TWINS = "give each another `as` or `version`, or a recipe of its own"
 
 
+@pytest.mark.thin(4)
 @pytest.mark.parametrize(
     ("files", "messages"),
     [

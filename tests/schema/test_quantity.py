@@ -94,6 +94,7 @@ def test_the_own_unit_changes_nothing(value: float, own: str) -> None:
     assert read_quantity(f"{value!r} deg", "degrees") == value
 
 
+@pytest.mark.thin(4)
 @pytest.mark.parametrize(
     ("field", "text", "said"),
     [
@@ -147,6 +148,7 @@ def test_a_formula_takes_none() -> None:
     assert said.endswith("a formula carries no units, given '1 in + 2*cos(3*t)'; give its numbers alone, in inch")
 
 
+@pytest.mark.thin(3)
 @pytest.mark.parametrize("bore", [8, 10, 12, 17, 22, 30, 38, 44, 50, 58])
 def test_a_metric_length_in_inches_is_what_a_standard_takes(bore: int) -> None:
     """A keyway's range ends at these bores; one in the last place more would have the next."""

@@ -38,6 +38,7 @@ def test_a_rise_between_two_looks_is_not_overlooked():
     assert worst[0] > worst[1] + 0.1
 
 
+@pytest.mark.thin(2)
 @pytest.mark.parametrize(("lam", "mu", "arm", "wave"), [(4, 3, 60.0, 625.0), (2, 1, 40.0, 1584.0)])
 def test_pressure_angle_at_its_very_maximum(lam, mu, arm, wave):
     """Against a fine grid of r and r' written out: the normal's slope to the ray, less the arm's."""

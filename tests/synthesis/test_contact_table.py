@@ -62,7 +62,7 @@ def exported(text: str, folder: Path, files: str = FILES) -> dict[str, dict[str,
     return found
 
 
-@pytest.mark.thin(8)
+@pytest.mark.thin(16)
 @pytest.mark.parametrize("name", KINDS)
 def test_contacts_of_every_kind(name: str, tmp_path: Path) -> None:
     tables = exported(KINDS[name] + "verify: {angles: 720}\n", tmp_path)
@@ -87,6 +87,7 @@ def test_contacts_of_every_kind(name: str, tmp_path: Path) -> None:
         assert np.abs(between / (0.5 * (low + high)) - 1.0)[smooth].max() < 0.05
 
 
+@pytest.mark.slow
 def test_pressure_angles_are_those_of_the_limits(tmp_path: Path) -> None:
     from camgeo.measures.figures import design_figures
 

@@ -38,6 +38,7 @@ def slopes(values: np.ndarray, step: float) -> np.ndarray:
     return slope
 
 
+@pytest.mark.thin(2)
 @pytest.mark.parametrize("unit", ["mm", "in"])
 def test_links_keep_their_lengths_and_columns_their_slopes(unit: str) -> None:
     """A at the origin, B at (ground, 0), D on the rocker about B, the slide on its line; all by the shaft angle."""

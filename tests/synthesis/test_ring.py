@@ -51,7 +51,6 @@ def test_the_hollows_of_the_pitch_curve_hold_the_roller(rise):
 
 
 @pytest.mark.slow
-@pytest.mark.thin(2)
 @pytest.mark.parametrize(("beyond", "sound"), [(-0.05, True), (0.05, False)])
 def test_a_roller_at_the_limit_against_all_its_own_positions(beyond, sound):
     """Contact is where no other place of the roller's centre lies nearer to the opening than its radius."""
@@ -116,6 +115,7 @@ def test_walls_of_a_ring(part, wall, pair):
     assert check.ok == (wall > 0) == (found.discs[0].body is not None)
 
 
+@pytest.mark.thin(2)
 @pytest.mark.parametrize("part", ["{outer: 83}", "{outer: 90, wall: 4}"])
 def test_the_outline_that_would_do_does(part):
     from camgeo.checks.declared import WALL
@@ -155,6 +155,7 @@ def cam(follower, motion, base=30):
     )
 
 
+@pytest.mark.thin(2)
 @pytest.mark.parametrize("follower", ["kind: knife-edge", "kind: knife-edge, arm: {length: 60, pivot: 70}"])
 def test_a_knife_edge_passes_a_hollow(follower):
     design = designed(cam(follower, MOTION.format(50, 150)))
@@ -173,6 +174,7 @@ def test_a_shoe_is_told_of_its_own_radius():
     assert "roller" not in check.detail
 
 
+@pytest.mark.thin(2)
 @pytest.mark.parametrize("kind", ["{rise_fall: 12, over: 360}", "{displacement: 5*(1-cos(2*pi*u)), over: 360}"])
 def test_one_segment_fills_the_turn(kind):
     assert all(check.ok for check in designed(cam("kind: roller, radius: 8", f"[{kind}]")).checks)

@@ -48,6 +48,7 @@ STEM = "kind: roller, radius: 9, offset: 6", "radius: 11, distance: 120"
 CRANK = "kind: roller, radius: 8, arm: {length: 65, pivot: 80}", "radius: 9, length: 60, angle: 90"
 
 
+@pytest.mark.thin(2)
 @pytest.mark.parametrize(
     ("pair", "points", "pressure", "least"),
     [

@@ -51,6 +51,7 @@ def parameter(follower, theta):
     return 0.5 * (low + high)
 
 
+@pytest.mark.thin(3)
 @pytest.mark.parametrize("name", POINTS)
 def test_the_exact_contour_of_a_case(name):
     follower = FOLLOWERS[name]
@@ -61,7 +62,7 @@ def test_the_exact_contour_of_a_case(name):
         assert follower.envelope.area_and_perimeter()[0] == pytest.approx(AREAS[name], abs=NINE)
 
 
-@pytest.mark.thin(16)
+@pytest.mark.thin(32)
 @pytest.mark.parametrize("tolerance", [1e-4, 1e-7])
 @pytest.mark.parametrize("name", CURVES)
 def test_contact_on_a_fit_keeps_the_intent(name, tolerance):

@@ -155,7 +155,7 @@ D02 = {
 }  # fmt: skip
 
 
-@pytest.mark.thin(3)
+@pytest.mark.slow
 @pytest.mark.parametrize("eccentricity", D02)
 def test_d02_roller_offset(eccentricity):
     points, most, fewest, radius = D02[eccentricity]
@@ -170,6 +170,7 @@ def test_d02_roller_offset(eccentricity):
     proved(recipe, design)
 
 
+@pytest.mark.slow
 def test_d03_flat():
     recipe, design = made(f"base_radius: 30, follower: {{kind: flat}}, motion: {M03}")
     shape = contour_of(design)
@@ -197,6 +198,7 @@ def contact_within(shape, low, high):
     assert greatest(shape.law.contact, stretches(shape)).value == pytest.approx(high, abs=NINE)
 
 
+@pytest.mark.slow
 def test_d04_flat_tilted():
     recipe, design = made(f"base_radius: 32, follower: {{kind: flat, tilt: 8, offset: 5}}, motion: {M03}")
     shape = contour_of(design)
@@ -206,6 +208,7 @@ def test_d04_flat_tilted():
     proved(recipe, design)
 
 
+@pytest.mark.slow
 def test_d05_knife_edge():
     motion = "[{rise: 25, over: 180, law: harmonic}, {return: 25, over: 180, law: harmonic}]"
     recipe, design = made(f"base_radius: 30, follower: {{kind: knife-edge}}, motion: {motion}")
@@ -248,7 +251,7 @@ D07 = {
 }  # fmt: skip
 
 
-@pytest.mark.thin(2)
+@pytest.mark.slow
 @pytest.mark.parametrize("side", D07)
 def test_d07_arm(side):
     most, fewest, radius = D07[side]

@@ -108,6 +108,7 @@ def test_a_change_at_the_turns_beginning_is_given_once():
     assert run.own_section()["changes_at_deg"] == pytest.approx([0.0, 180.0], abs=1e-9)
 
 
+@pytest.mark.slow
 def test_a_groove():
     """f02 and f11: which flank bears, forces, torque, pressure, and the mean force on the one roller."""
     run = running(GROOVE, "mass: 1.2, rpm: 900, load: 40, material: steel")
@@ -166,7 +167,7 @@ def test_a_load_that_is_sampled_lets_faces_go_at_the_lower_speed():
         assert rpm < 0.999 * alone[40][face]
 
 
-@pytest.mark.thin(2)
+@pytest.mark.thin(4)
 @pytest.mark.parametrize("kind", KINDS)
 def test_work_against_levers(kind):
     """F y' is the torque of the contacts' lines about the shaft, to 1e-9 of the greatest."""
@@ -178,7 +179,7 @@ def test_work_against_levers(kind):
     assert np.abs(work).max() > 0.0
 
 
-@pytest.mark.thin(2)
+@pytest.mark.thin(4)
 @pytest.mark.parametrize("kind", [*KINDS, "groove", "discs"])
 def test_the_lines_are_those_of_the_surfaces(kind):
     """Points and normals of the contacts against the maker's own curves, where the parameter is the shaft angle."""

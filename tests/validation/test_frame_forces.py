@@ -532,6 +532,7 @@ def test_pressure_at_the_faces():
     assert state.pressure[3, 0] == pytest.approx(math.sqrt(222.464669181 * modulus / (math.pi * 8 * rho)), rel=1e-9)
 
 
+@pytest.mark.slow
 def test_a_slide_counts_in_newtons(tmp_path):
     """f09 at shaft angle 0, as its file has it."""
     text = SLIDER + f"dynamics: {{{F09}}}\nexport: {{files: [{{csv: {{as: forces}}}}]}}\nverify: {{angles: 360}}\n"
@@ -554,6 +555,7 @@ PRESSED = FOUR_BAR.replace(
 UNEVEN = PRESSED.replace("[2.0e7, 2.0e7]", "[2.0e7, 6.0e7]")
 
 
+@pytest.mark.slow
 def test_faces_under_preload():
     """f06: the frame 0.02 mm narrower both ways, 20 kN/mm each: 200 N on all four; at 60 degrees as printed."""
     run = running(PRESSED, F06)
@@ -567,6 +569,7 @@ def test_faces_under_preload():
     )
 
 
+@pytest.mark.slow
 def test_faces_of_unequal_stiffness():
     """N = P + V k1/(k1 + k2) on face 1, P - H k1/(k1 + k2) on face 2; a lost face bears nothing, the other all."""
     state = running(UNEVEN, F06.replace("load: 12", "load: 30")).at(np.linspace(0.0, 6.2, 60))
@@ -584,7 +587,6 @@ def test_faces_of_unequal_stiffness():
 
 
 @pytest.mark.slow
-@pytest.mark.thin(2)
 @pytest.mark.parametrize("text", [PRESSED, UNEVEN])
 def test_speeds_from_which_faces_are_lost(text):
     """At that speed the least force of the face is 0, at that place; a little below it is above 0."""
@@ -622,6 +624,7 @@ def test_files_of_a_preloaded_frame(tmp_path):
         assert "linkage-error" in failed
 
 
+@pytest.mark.slow
 def test_a_spring_beside_a_preloaded_frame():
     """It acts on the output, and so goes with the preload of the faces."""
     sprung = running(PRESSED, F06 + ", preload: 3").at(np.radians([60.0]))

@@ -7,10 +7,10 @@ import math
 import re
 from pathlib import Path
 
-import ezdxf
 import numpy as np
 import pytest
 from support import brute_disc
+from support.heavy import ezdxf
 from support.kernel import kernel
 
 from camgeo.output.pipeline import export, judge_files
@@ -102,7 +102,7 @@ def test_the_play_is_reported_and_limited(tmp_path):
     assert {check["name"] for check in tight.report["checks"] if not check["ok"]} == {"limit:backlash"}
 
 
-@pytest.mark.thin(12)
+@pytest.mark.slow
 @pytest.mark.parametrize("clearance", [1.0, 0.03, 1e-6, 0.0])
 @pytest.mark.parametrize("held", ["stem", "trailing", "leading"])
 def test_brute_force_on_either_flank(held, clearance, tmp_path):
@@ -178,7 +178,7 @@ FAULTS = {
 }
 
 
-@pytest.mark.thin(7)
+@pytest.mark.slow
 @pytest.mark.parametrize("fault", FAULTS)
 def test_a_planted_fault_is_refused(fault, stem, tmp_path):
     recipe, path = stem
@@ -287,7 +287,6 @@ def test_a_solid_has_the_pocket(kind, tmp_path):
 
 @pytest.mark.slow
 @kernel
-@pytest.mark.thin(2)
 @pytest.mark.parametrize("form", ["arcs", "spline"])
 def test_a_step_solid_has_a_hub_below_and_a_mark(form, tmp_path):
     hub = "hub: {diameter: 25, height: 8, side: bottom}, mark: {as: engrave, width: 1, length: 4}"

@@ -86,6 +86,7 @@ def test_f25_of_a_roller(source, at, alpha, force, tmp_path):
     assert contact["max"] >= force * (1.0 - 1e-9)
 
 
+@pytest.mark.slow
 def test_f25_of_a_flat_face(tmp_path):
     """Touched 9 mm from the axis on the rise: the greatest force of the turn; both ends bear the couple."""
     source = text(base=40.0, follower="kind: flat", motion=WAVE.format(a=9.0))
@@ -120,7 +121,7 @@ PLANE = {
 }
 
 
-@pytest.mark.thin(2)
+@pytest.mark.thin(4)
 @pytest.mark.parametrize("name", PLANE)
 def test_equilibrium_in_the_plane(name):
     """Forces and moments on the stem, x outward along it; a second contact stands `apart` further back."""
@@ -190,6 +191,7 @@ def test_the_second_disc_jams_first():
     assert jam["limit"] < math.degrees(guide.jam())
 
 
+@pytest.mark.slow
 def test_a_flat_face_needs_more_than_without_friction():
     free = {"base": 90.0, "follower": "kind: flat", "motion": DOUBLE, "mass": 1.2, "rpm": 300, "held": "preload: 400"}
     rubbing, slippery = (extremes_of(running(text(**free, friction=mu))) for mu in (0.3, 1e-12))

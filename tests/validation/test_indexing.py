@@ -84,7 +84,7 @@ def rows(workshop):
     return [*found, Row(what, "brute force over positions", "8", 8.0, float(least.min()), 1e-9, ".10g")]
 
 
-@pytest.mark.costly("globoids with two rollers")
+@pytest.mark.slow
 def test_a_roller_that_is_larger_is_told_apart():
     """A thousandth of a millimetre more is far outside what the rows of c16 may differ by."""
     theta, r, _, upper, z = TOUCHED[0]

@@ -74,6 +74,7 @@ def test_the_file_has_no_vertex_too_many(figure_1):
     assert figure_1.drawing.pieces == math.ceil(formula(E))
 
 
+@pytest.mark.slow
 def test_the_file_straddles_the_curve_and_wastes_nothing(figure_1):
     low, high = deviation(figure_1.contour.vertices)
     assert -E <= low < -0.97 * E

@@ -25,7 +25,7 @@ FOUR_BARS = [name for name, figure in FIGURES.items() if figure.coupler is not N
 INVERTED = [name for name, figure in FIGURES.items() if figure.coupler is None]
 
 
-@pytest.mark.thin(8)
+@pytest.mark.slow
 @pytest.mark.parametrize("name", FOUR_BARS)
 def test_equations_11_to_13_hold_for_our_positions(name):
     s, s1, figure, (three, _, _), (four, _, _) = four_bar_parts(name)
@@ -58,7 +58,7 @@ def test_equation_18_with_its_plus_sign_is_the_open_assembly(name):
     assert np.abs(np.exp(1j * off) - 1).max() < 1e-12
 
 
-@pytest.mark.thin(4)
+@pytest.mark.thin(12)
 @pytest.mark.parametrize("name", FOUR_BARS)
 def test_equation_20_is_right_while_the_rocker_stays_short_of_90_degrees(name):
     s, s1, figure, (three, _, _), (four, _, _) = four_bar_parts(name)
@@ -82,7 +82,7 @@ def test_equation_20_loses_the_branch_beyond_90_degrees():
     assert four == pytest.approx(reference.output[0], abs=1e-10)
 
 
-@pytest.mark.thin(2)
+@pytest.mark.thin(8)
 @pytest.mark.parametrize("name", FOUR_BARS)
 def test_equation_21_holds_for_our_rates(name):
     s, s1, figure, (three, w3, _), (four, w4, _) = four_bar_parts(name)
@@ -92,7 +92,7 @@ def test_equation_21_holds_for_our_rates(name):
     assert apart(figure.rocker * w4 * np.cos(four), right) < 1e-8
 
 
-@pytest.mark.thin(2)
+@pytest.mark.thin(4)
 @pytest.mark.parametrize("name", FOUR_BARS)
 def test_equation_34_of_appendix_1(name):
     """Right, where its denominator is not 0: theta_3 = theta_4 there, or the coupler's line passes through B."""
@@ -106,7 +106,7 @@ def test_equation_34_of_appendix_1(name):
     assert apart(top[clear] / bottom[clear], w4[clear]) < 1e-9
 
 
-@pytest.mark.thin(4)
+@pytest.mark.slow
 @pytest.mark.parametrize("name", FOUR_BARS)
 def test_equation_34_vanishes_over_itself_where_theta_3_is_theta_4_and_ours_does_not(name):
     figure, scene = FIGURES[name], Scene.of(name)
@@ -169,7 +169,7 @@ def test_dead_centres_lie_where_y_vanishes():
     assert np.abs(off[:, None] - [0, 180, 360]).min() > 30  # not theta_3, nor theta_3 + 180 deg
 
 
-@pytest.mark.thin(10)
+@pytest.mark.thin(20)
 @pytest.mark.parametrize("name", [*FIGURES, *linkage_page.OURS])
 def test_no_dead_centre_is_where_the_paper_has_it(name):
     mechanism = Scene.of(name).mechanism

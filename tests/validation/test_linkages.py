@@ -131,7 +131,7 @@ def drawn(request):
     return Scene.of(request.param), FIGURES[request.param].loop(FINE)
 
 
-@pytest.mark.thin(6)
+@pytest.mark.thin(12)
 def test_positions_and_both_derivatives_over_the_relative_angle(drawn):
     scene, loop = drawn
     motion = scene.mechanism.at(FINE, 2)
@@ -177,6 +177,7 @@ def test_dwells_over_either_angle(name, band):
         assert found.greatest - found.least <= np.radians(band) * (1 + 1e-9)
 
 
+@pytest.mark.slow
 def test_only_a_turning_frame_shortens_a_dwell_over_the_shaft():
     """theta_3 + theta_4 = 90 deg in the inverted slider-crank: while its output rests, so does the frame."""
     for name, differs in (("as-figure-9-2a", True), ("as-figure-13-2a", False)):
@@ -208,6 +209,7 @@ def test_two_rests_of_the_oscillating_yoke_are_true_ones(workshop):
     assert all(60 <= one["length_deg"] <= 70 for one in told)
 
 
+@pytest.mark.slow
 def test_the_dyads_rocker_rests_with_the_first():
     """Six-bar: the triangle of P, the elbow Q and the pivot G, written out, on the rocker of the reference."""
     loop = FIGURES["as-figure-9-2a"].loop(FINE)

@@ -63,6 +63,7 @@ def test_the_lobe_lies_near_the_arcs_and_has_no_jump() -> None:
 
 
 # needs: camshaft
+@pytest.mark.slow
 def test_the_events_are_the_published_ones(tmp_path: Path) -> None:
     (tmp_path / "lobe.yaml").write_text(text(), encoding="utf-8")
     at = CARD[0][0]

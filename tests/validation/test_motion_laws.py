@@ -110,7 +110,7 @@ def rebuilt(name):
     return float(top / stroke), float(peak / stroke)
 
 
-@pytest.mark.thin(6)
+@pytest.mark.thin(12)
 @pytest.mark.parametrize("name", sorted(SHAPES))
 def test_peaks_follow_from_the_shape_of_the_acceleration(name):
     velocity, acceleration, _ = peaks(name)
@@ -120,7 +120,7 @@ def test_peaks_follow_from_the_shape_of_the_acceleration(name):
     assert acceleration == pytest.approx(peak, rel=1e-6)
 
 
-@pytest.mark.thin(2)
+@pytest.mark.thin(4)
 @pytest.mark.parametrize("name", sorted(SHAPES))
 def test_acceleration_is_the_rebuilt_one_everywhere(name):
     breaks, shapes = SHAPES[name]
@@ -132,6 +132,7 @@ def test_acceleration_is_the_rebuilt_one_everywhere(name):
     assert found == pytest.approx(wanted, rel=1e-10, abs=1e-9)
 
 
+@pytest.mark.thin(3)
 @pytest.mark.parametrize("name", sorted(SHAPES))
 def test_derivatives_against_difference_quotients(name):
     """Central quotients of each derivative give the next, away from the knots."""
@@ -145,6 +146,7 @@ def test_derivatives_against_difference_quotients(name):
         assert quotient[k] == pytest.approx(rows_[k + 1], abs=2e-6 * max(1.0, np.abs(rows_[k + 1]).max()))
 
 
+@pytest.mark.thin(3)
 @pytest.mark.parametrize("name", sorted(SHAPES))
 def test_ends_and_continuity(name):
     law = named(name)

@@ -60,6 +60,7 @@ def held(kind, degrees):
     return levers, force, force.preload / levers
 
 
+@pytest.mark.thin(2)
 @pytest.mark.parametrize(
     ("kind", "levers", "preload", "normal"),
     [
@@ -127,6 +128,7 @@ def test_two_discs():
     assert second == pytest.approx([88.405933393, 373.434916102, 613.236731539, 581.270311390, 207.004054773], abs=1e-8)
 
 
+@pytest.mark.thin(2)
 @pytest.mark.parametrize(
     ("kind", "least", "most"),
     [
@@ -220,6 +222,7 @@ def exported(request, tmp_path_factory):
     return kind, recipe, outcome.folder
 
 
+@pytest.mark.thin(2)
 def test_what_is_made_interferes(exported):
     kind, _, folder = exported
     report = json.loads((folder / "report.json").read_text(encoding="utf-8"))
@@ -342,7 +345,7 @@ def test_a_limit_of_its_force():
         recipe_of("yoke", 0.0, more="limits: {preload-force-least: {at_least: 541}}")
 
 
-@pytest.mark.thin(2)
+@pytest.mark.slow
 @pytest.mark.parametrize("interference", [1e-6, 5.0])
 def test_extremes(interference, tmp_path):
     """A millionth of a millimetre is held by a finer tolerance still; metres of stroke take millimetres."""

@@ -118,6 +118,7 @@ def files_of(folder):
     return [folder / f"pair-{k}.dxf" for k in (1, 2)]
 
 
+@pytest.mark.slow
 def test_what_is_made_interferes(made):
     pair, report, _ = made
     assert not failing(pair, files_of(report.path))

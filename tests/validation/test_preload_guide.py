@@ -146,6 +146,7 @@ def disagreement(name, stiffness, guide, rpm, load, *, mass=1.3, friction=None, 
 STIFF, LED = (4.0e7, 6.0e7), (40.0, 50.0, 0.1)
 
 
+@pytest.mark.thin(2)
 @pytest.mark.parametrize("name", SHAPES)
 def test_equilibrium_while_both_bear(name):
     worst, bearing = disagreement(name, STIFF, LED, 500.0, 50.0)
@@ -153,6 +154,7 @@ def test_equilibrium_while_both_bear(name):
     assert bearing == {(True, True)}
 
 
+@pytest.mark.thin(2)
 @pytest.mark.parametrize("name", SHAPES)
 def test_equilibrium_where_contacts_are_lost(name):
     worst, bearing = disagreement(name, STIFF, (25.0, 60.0, 0.2), 2500.0, 90.0, mass=3.0)
@@ -214,7 +216,7 @@ def test_the_discs_of_the_case():
         assert left[1] == pytest.approx(0.0, abs=1e-4)
 
 
-@pytest.mark.thin(4)
+@pytest.mark.slow
 @pytest.mark.parametrize("name", SHAPES)
 def test_the_check_on_jamming(name):
     """Of a face by its distance from the axis, of rollers by the second, which stands further from the guide."""
@@ -229,6 +231,7 @@ def test_the_check_on_jamming(name):
         assert jam["value"] == pytest.approx(6.0, abs=1e-9)
 
 
+@pytest.mark.slow
 def test_a_stem_that_jams():
     """A stem jams by one contact alone, which the check tells; or both wedge it between them, which is refused."""
     slack = running("yoke", STIFF, (40.0, 50.0, 4.1), "mass: 1, rpm: 60")

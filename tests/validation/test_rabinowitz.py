@@ -84,6 +84,7 @@ def test_the_polynomial_vanishes_on_the_parametric_curve():
     assert (np.abs(polynomial(x, y)) / gradient(x, y)).max() < 1e-9
 
 
+@pytest.mark.slow
 def test_the_polynomial_vanishes_on_the_file_within_its_tolerance(curve):
     found = distances(curve.contour)
     assert found.size > 1000

@@ -147,7 +147,7 @@ def constant_breadth(request, workshop):
     return exported(workshop, request.param), CONSTANT_BREADTH[request.param]
 
 
-@pytest.mark.thin(18)
+@pytest.mark.slow
 def test_equation_4_breadth_is_constant_at_every_angle_of_the_file(constant_breadth):
     made, (breadth, _, _) = constant_breadth
     t = np.linspace(0, PI, 5001)
@@ -155,7 +155,7 @@ def test_equation_4_breadth_is_constant_at_every_angle_of_the_file(constant_brea
     assert np.abs(measured - breadth).max() <= 2 * made.recipe.export.tolerance
 
 
-@pytest.mark.thin(3)
+@pytest.mark.thin(18)
 def test_barbier_and_area(constant_breadth):
     made, (breadth, _, area) = constant_breadth
     e = made.recipe.export.tolerance

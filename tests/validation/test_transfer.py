@@ -25,7 +25,7 @@ CASES = {  # cam, stroke, and the greatest motion error over the normal one wher
 }
 
 
-@pytest.mark.thin(6)
+@pytest.mark.thin(12)
 @pytest.mark.parametrize(("cam", "stroke", "gain"), CASES.values(), ids=CASES)
 def test_d20_metal_that_is_too_small_everywhere(tmp_path: Path, cam: str, stroke: float, gain: float | None) -> None:
     text = f"cam: {{kind: disc, {cam}, motion: [{RISE % (stroke, stroke)}]}}\n"

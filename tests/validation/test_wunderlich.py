@@ -300,7 +300,6 @@ def goldberg(workshop):
 
 
 @pytest.mark.slow
-@pytest.mark.thin(5)
 def test_equation_7_1_on_the_file(pitch):
     curve, e = pitch
     assert np.abs(curve.closing(np.linspace(0, 2 * PI, 3601))).max() <= 3 * e
@@ -313,6 +312,7 @@ def test_section_6_chord_polygon_closes_from_any_start(pitch):
     assert curve.gaps().max() <= 4 * curve.steps * e
 
 
+@pytest.mark.slow
 def test_chords_of_another_length_do_not_close(figure_8):
     curve = Pitch.of(figure_8)
     longer = Pitch(curve.t, curve.r * (1 - 1e-3), curve.alpha, curve.arm, curve.steps)

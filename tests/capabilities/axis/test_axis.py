@@ -242,6 +242,7 @@ def test_lengths_are_in_the_recipes_unit_and_a_table_of_another_is_refused(
     assert "in/deg" in " ".join(head)
 
 
+@pytest.mark.thin(2)
 @pytest.mark.parametrize(("text", "shape"), [(INDEX, "table"), (PUSH, "carriage")])
 def test_the_page_has_four_curves_in_time_with_their_limits(text: str, shape: str, tmp_path: Path) -> None:
     path = written(tmp_path, text + "limits: {velocity: {at_most: 500}}\n", f"{PLAIN}, html")
@@ -256,6 +257,7 @@ def test_the_page_has_four_curves_in_time_with_their_limits(text: str, shape: st
     assert "svg" in camgeo.design(path)._repr_html_()
 
 
+@pytest.mark.thin(2)
 @pytest.mark.parametrize("units", ["mm", "inch"])
 def test_the_page_of_a_judged_table_has_its_error(units: str, tmp_path: Path) -> None:
     """One row of a table is moved by 0.02, twice the tolerance: the error is that there, and ends at its neighbours."""

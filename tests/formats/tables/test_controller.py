@@ -76,7 +76,7 @@ def joined(head: list[str], columns: dict[str, Any]) -> Any:
 RATES = (("velocity", "SlaveVelo"), ("acceleration", "SlaveAcc"))
 
 
-@pytest.mark.thin(12)
+@pytest.mark.thin(8)
 @pytest.mark.parametrize("cam", CAMS)
 @pytest.mark.parametrize("controller", [name for name in CONTROLLERS if name != "sew"])
 def test_a_drive_is_within_what_its_table_says(cam: str, controller: str, tmp_path: Path) -> None:
@@ -142,6 +142,7 @@ def test_a_curve_point_table_has_its_number_of_rows_and_holds_its_tolerance(cam:
         assert main(["verify", str(path), str(other), *tolerance]) == 1
 
 
+@pytest.mark.thin(2)
 @pytest.mark.parametrize(
     ("old", "new", "told"),
     [
@@ -171,7 +172,7 @@ def test_a_curve_point_table_has_so_many_rows_and_no_more(tmp_path: Path) -> Non
     assert (tmp_path / "out" / "cam" / "cam.csv").read_text().startswith("1001\n")
 
 
-@pytest.mark.thin(2)
+@pytest.mark.slow
 @pytest.mark.parametrize(("controller", "tolerance"), [("codesys", "0.00001"), ("codesys-table", "0.01")])
 def test_the_step_is_the_widest_that_holds_the_tolerance(controller: str, tolerance: str, tmp_path: Path) -> None:
     path = written(tmp_path, "stem", f"for: {controller}", tolerance)
@@ -350,6 +351,7 @@ def test_a_table_of_six_degrees_has_its_position_and_loses_its_acceleration(tmp_
     assert f"its acceleration within {check.value:.3g}"[:28] in " ".join(head)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("controller", ["twincat", "twincat-table", "rockwell"])
 def test_rows_at_joints_are_fewer_and_at_every_joint(controller: str, tmp_path: Path) -> None:
     even, _, plain = one(tmp_path, f"for: {controller}", "0.002")
@@ -384,6 +386,7 @@ def law(x: Any, order: int) -> Any:
     return 20.0 * value / 60.0**order
 
 
+@pytest.mark.slow
 def test_a_limit_of_the_acceleration_takes_the_rows_that_it_needs(tmp_path: Path) -> None:
     def steps(options: str) -> tuple[int, float]:
         report, _, columns = one(tmp_path, options)

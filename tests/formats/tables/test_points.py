@@ -49,7 +49,7 @@ def test_the_spline_through_the_points_is_judged_as_a_contour(cam: str, tmp_path
     assert 36 < len(rows) < 2000
 
 
-@pytest.mark.thin(2)
+@pytest.mark.slow
 @pytest.mark.parametrize("suffix", ["txt", "xyz"])
 def test_a_text_has_blanks_between_the_numbers(suffix: str, tmp_path: Path) -> None:
     report = camgeo.export(written(tmp_path, "flat", f", suffix: {suffix}"), tmp_path / "out")
@@ -129,7 +129,6 @@ def test_a_contour_with_corners_is_no_spline(tmp_path: Path) -> None:
 
 
 @pytest.mark.slow
-@pytest.mark.thin(5)
 @pytest.mark.parametrize("cam", ["stem", "ccw", "inch"])
 @pytest.mark.parametrize("suffix", ["csv", "txt", "xyz"])
 def test_a_list_of_any_origin_is_verified_as_the_spline_through_it(cam: str, suffix: str, tmp_path: Path) -> None:
@@ -161,6 +160,7 @@ def test_a_table_of_a_machine_is_one_with_any_suffix(tmp_path: Path) -> None:
     assert "interpolation" in {check.name for check in report.checks}
 
 
+@pytest.mark.slow
 def test_a_list_of_points_is_of_one_contour(tmp_path: Path) -> None:
     recipe = written(tmp_path, "stem")
     camgeo.export(recipe, tmp_path / "out")

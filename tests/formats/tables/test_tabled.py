@@ -22,6 +22,7 @@ def test_no_finer_than_the_controller_takes():
     assert fewest_rows(lambda n: n >= 360, finest=1.0) == 360
 
 
+@pytest.mark.thin(2)
 @pytest.mark.parametrize("least", [36, 1_000, 360_000, 400_000])
 def test_each_number_of_rows_is_tried_once(least):
     """A try of 360,000 rows takes seconds."""

@@ -31,6 +31,7 @@ def python_value(text: str, t: float) -> float:
     return eval(f"({text})", {"__builtins__": {}}, names | {"t": t, "abs": abs, "min": min, "max": max})
 
 
+@pytest.mark.thin(4)
 @pytest.mark.parametrize(
     "text",
     [
@@ -311,6 +312,7 @@ def test_a_formula_applies_to_any_series() -> None:
 ROOT_OF_COS_T_IS_T = 0.7390851332151606416553120876738734
 
 
+@pytest.mark.thin(4)
 @pytest.mark.parametrize(
     ("text", "breaks"),
     [
@@ -417,6 +419,7 @@ def test_too_many_switches_are_refused() -> None:
         Formula("abs(sin(1e6*t))").pieces(0, TURN)
 
 
+@pytest.mark.thin(3)
 @pytest.mark.parametrize(
     "text",
     [
