@@ -219,11 +219,11 @@ def left_on(gauge: Track, passes: Sequence[Pass], radius: float, tolerance: floa
     """
     cutter = _Cutter(radius, growth)
     ways = [_forwards(one) for one in _deepest(passes)]
-    askew = _begun(gauge, cutter, tolerance)
-    if not _is_told(_grid(gauge, cutter, askew, tolerance), MOST_POINTS):
+    askew, shape = _begun(gauge, cutter, tolerance), _Shape.of(gauge)
+    if not _is_told(_grid(shape, cutter, askew, tolerance), MOST_POINTS):
         return None
     while True:
-        found = _left(gauge, ways, cutter, askew, tolerance)
+        found = _left(shape, ways, cutter, askew, tolerance)
         if found is None:
             return None
         left, widest = found
@@ -234,10 +234,10 @@ def left_on(gauge: Track, passes: Sequence[Pass], radius: float, tolerance: floa
 
 def finest_on(gauge: Track, radius: float, growth: float = 0.0) -> float:
     """Least tolerance, mm, to within `FINER`, to which `left_on` tells what a cutter leaves of a flank."""
-    cutter = _Cutter(radius, growth)
+    cutter, shape = _Cutter(radius, growth), _Shape.of(gauge)
 
     def told(tolerance: float) -> bool:
-        return _is_told(_grid(gauge, cutter, _begun(gauge, cutter, tolerance), tolerance), MOST_POINTS)
+        return _is_told(_grid(shape, cutter, _begun(gauge, cutter, tolerance), tolerance), MOST_POINTS)
 
     high = 1.0
     while told(0.25 * high):
@@ -282,7 +282,7 @@ def _forwards(one: Pass) -> Pass:
 
 
 def _left(
-    gauge: Track,
+    shape: _Shape,
     ways: Sequence[Pass],
     cutter: _Cutter,
     askew: _Askew,
@@ -292,7 +292,8 @@ def _left(
 
     The points are as near to one another as one that is `askew` asks for; None where they are too many.
     """
-    theta, rho = _grid(gauge, cutter, askew, tolerance)
+    gauge = shape.gauge
+    theta, rho = _grid(shape, cutter, askew, tolerance)
     if not _is_told((theta, rho), ROOMY * MOST_POINTS):
         return None
     points = _points(gauge, theta, rho)
@@ -496,7 +497,7 @@ def _points(gauge: Track, theta: Array, rho: Array) -> _Points:
     )
 
 
-def _grid(gauge: Track, cutter: _Cutter, askew: _Askew, tolerance: float) -> tuple[Array, Array]:
+def _grid(shape: _Shape, cutter: _Cutter, askew: _Askew, tolerance: float) -> tuple[Array, Array]:
     """Angles, rad, and places, mm, between which D changes by no more than the shares of the tolerance.
 
     All below are bounds of magnitudes over parts of the period, at all places from the roller's inner end to its outer.
@@ -507,11 +508,7 @@ def _grid(gauge: Track, cutter: _Cutter, askew: _Askew, tolerance: float) -> tup
 
     and by rho -side R a_2^2 and -side R a_2; what N is askew adds its share of what lies the other way.
     """
-    begin, end = gauge.lifts.span
-    looks = np.linspace(begin, end, math.ceil((end - begin) / TURN * LOOKS - ROUNDING) + 1)
-    looks = np.unique(np.concatenate([looks, gauge.lifts.breaks]))
-    moved = _Moved.of(gauge, looks)
-    bent = _Bent.of(gauge, moved)
+    gauge, looks, moved, bent = shape
     nearest, low, high = NEARLY * cutter.radius, gauge.inner, gauge.outer
     growth, size = gauge.spread, float(gauge.size(high))
     tilt, lean = askew
@@ -522,7 +519,7 @@ def _grid(gauge: Track, cutter: _Cutter, askew: _Askew, tolerance: float) -> tup
     second = bend + out * (tilt + cutter.growth)
     count = np.ceil(np.diff(looks) / np.sqrt(8.0 * ACROSS * tolerance / (speed**2 / nearest + second))).astype(np.intp)
     own, step = runs_of(count)
-    theta = np.append(looks[own] + step * (np.diff(looks) / count)[own], end)
+    theta = np.append(looks[own] + step * (np.diff(looks) / count)[own], gauge.lifts.span[1])
     along = (size * bent.along + lean * growth + tilt) ** 2 / nearest + size * bent.along**2
     along += lean * (2.0 * growth * bent.along + size * bent.along_twice)
     rows = int(np.ceil((high - low) * np.sqrt(float(along.max()) / (8.0 * ALONG * tolerance))))
@@ -607,6 +604,24 @@ class _Bent(NamedTuple):
         along = sine * (1.0 + growth**2) / h
         twice = (2.0 * along * (1.0 + growth**2) * cosine + lag * along**2) / h
         return _Bent(sine, cosine, first, second / h, along, twice)
+
+
+class _Shape(NamedTuple):
+    """A track, and its period's parts by their ends (n + 1,), rad, with bounds of axis and contact over each."""
+
+    gauge: Track
+    looks: Array
+    moved: _Moved
+    bent: _Bent
+
+    @staticmethod
+    def of(gauge: Track) -> _Shape:
+        """Bounds of a track, which are the same for every cutter and tolerance."""
+        begin, end = gauge.lifts.span
+        looks = np.linspace(begin, end, math.ceil((end - begin) / TURN * LOOKS - ROUNDING) + 1)
+        looks = np.unique(np.concatenate([looks, gauge.lifts.breaks]))
+        moved = _Moved.of(gauge, looks)
+        return _Shape(gauge, looks, moved, _Bent.of(gauge, moved))
 
 
 def _nearest(points: _Points, one: Pass, turn: float, gauge: Track, cutter: _Cutter) -> _Met:

@@ -112,15 +112,16 @@ class Crossing:
         angle b that is tolerance/sin b, to first order.
         """
         radius, shares, found = np.array([r]), (np.arange(PARTS) + 0.5) / PARTS, []
+        places, nearer = {}, {}
+        for word, corner in self.corners.items():
+            places[word] = corner.at(radius)
+            rows = [_row(flank, at, radius) for flank, at in zip(corner.flanks, places[word], strict=True)]
+            one, other = (math.atan2(float(z[0]), r * float(phi[0])) for _, _, phi, z in rows)
+            nearer[word] = tolerance / abs(math.sin(one - other))
         for (track, _), words in LOST.items():
-            k, more, ends = "ab".index(track), 0.0, []
-            for corner in (self.corners[word] for word in words):
-                angles = corner.at(radius)
-                rows = [_row(flank, at, radius) for flank, at in zip(corner.flanks, angles, strict=True)]
-                one, other = (math.atan2(float(z[0]), r * float(phi[0])) for _, _, phi, z in rows)
-                more += tolerance / abs(math.sin(one - other))
-                ends.append(float(angles[k][0]))
-            begin, end = ends
+            k = "ab".index(track)
+            begin, end = (float(places[word][k][0]) for word in words)
+            more = sum(nearer[word] for word in words)
             slope = self.corners[words[0]].flanks[k].law.derivatives(begin + (end - begin) * shares, 1)[1]
             found.append((end - begin) * float(np.hypot(r, slope).mean()) + more)
         return max(found)

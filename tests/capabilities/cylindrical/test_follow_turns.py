@@ -13,11 +13,15 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 import pytest
+from capabilities.cylindrical.made_drums import design_of
 from capabilities.cylindrical.wound_drums import SCREW_ROWS, SPIRAL, SPIRAL_ROWS, Pins, random_track
 from support.places import RECIPES
 
 import camgeo
+from camgeo.capabilities.cylindrical.solid import drum_mesh
 from camgeo.cli.main import main
+from camgeo.files.mesh import Item
+from camgeo.output.extension import MAKING, numbers_of
 from kin.cylindrical.unknown import Column
 from kin.cylindrical.wound import windings
 
@@ -96,16 +100,17 @@ def spiral(tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 
 def solid_of(text: str, folder: Path) -> Path:
-    """The STL of a recipe, without its other files."""
-    (folder / "drum.yaml").write_text(text, encoding="utf-8")
-    report = camgeo.export(folder / "drum.yaml", folder, only=["stl"])
-    assert report.path is not None
-    return report.path / "drum.stl"
+    """The STL of a recipe, which nobody has judged."""
+    design, write = design_of(text), MAKING["stl"].write
+    assert write is not None
+    mesh, *_ = drum_mesh(design, design.recipe.export.tolerance, numbers_of("stl", 1.0))
+    write(folder / "drum.stl", [Item("drum", mesh)], "drum", 1.0, "")
+    return folder / "drum.stl"
 
 
 def longest_gap(pins: Pins, radius: float) -> float:
     """Greatest length, mm, of a wall that another turn takes, 2 R/sin b with b the angle of both tracks at a radius."""
-    theta = np.linspace(0.0, 2.0 * np.pi * pins.turns, 200_001)
+    theta = np.linspace(0.0, 2.0 * np.pi * pins.turns, 20_001)
     gaps = []
     for turn in range(1, pins.turns):
         over = pins(theta + 2.0 * np.pi * turn) - pins(theta)

@@ -29,7 +29,8 @@ from capabilities.cylindrical.test_step import (
     without_a_face,
     written,
 )
-from capabilities.cylindrical.wound_drums import SCREW, SCREW_ROWS, SPIRAL, SPIRAL_ROWS, Pins, random_track, text_of
+from capabilities.cylindrical.test_turns import SHORT, SHORT_ROWS
+from capabilities.cylindrical.wound_drums import SCREW, SCREW_ROWS, SPIRAL, SPIRAL_ROWS, Pins, random_track
 from support.kernel import kernel
 
 import camgeo
@@ -46,8 +47,6 @@ if TYPE_CHECKING:
     from collections.abc import Callable
     from pathlib import Path
 
-    from capabilities.cylindrical.wound_drums import Row
-
     from camgeo.capabilities.cylindrical.bicubic import Bicubic
     from camgeo.capabilities.cylindrical.design import DrumDesign
     from camgeo.capabilities.cylindrical.trimmed import Trimmed
@@ -55,10 +54,7 @@ if TYPE_CHECKING:
 TURN = 2.0 * math.pi
 FINE = 0.003  # mm
 SHARE = np.random.default_rng(3).uniform(0.0, 1.0, 29)
-BENT_ROWS: list[Row] = [(40.0, 360.0, 60.0, 169.7), (-40.0, 360.0, 60.0, 60.0)]
-BENT = text_of(BENT_ROWS, radius=30.0, depth=5.0, width=8.0, length=24.0)
-"""A groove of two turns one of whose blends begins on an edge of a crossing, where the jerk jumps."""
-TRACKS = {"screw": (SCREW, SCREW_ROWS), "spiral": (SPIRAL, SPIRAL_ROWS), "bent": (BENT, BENT_ROWS)}
+TRACKS = {"short": (SHORT, SHORT_ROWS), "screw": (SCREW, SCREW_ROWS), "spiral": (SPIRAL, SPIRAL_ROWS)}
 
 
 @cache
@@ -115,6 +111,7 @@ def test_both_flanks_of_a_corner_end_in_one_curve_that_is_near_both(name: str) -
         assert away[:, 1].max() < found.off + 1e-9
 
 
+@pytest.mark.thin(3)
 @pytest.mark.costly("splines of drums of several turns")
 @pytest.mark.parametrize("name", TRACKS)
 def test_the_parts_of_a_stretch_follow_one_another_down_to_the_last_digits(name: str) -> None:
@@ -129,7 +126,7 @@ def test_the_parts_of_a_stretch_follow_one_another_down_to_the_last_digits(name:
 @pytest.mark.costly("splines of a drum of two turns, and places on the worst of them against pins at all angles")
 def test_a_jump_of_the_jerk_beneath_an_edge_counts(monkeypatch: pytest.MonkeyPatch) -> None:
     """The break lies between the ends of a line; as if it were not there fewer columns would be proved."""
-    design, r = designed("bent"), np.linspace(25.0, 30.0, 9)
+    design, r = designed("short"), np.linspace(25.0, 30.0, 9)
     flank, at = design.flanks["lower"], math.radians(190.3)
     kept = kept_of(design.crossings, "lower", flank.period)
     lines = [line for ends in kept for line in lines_of(ends, r, flank.period)]
@@ -140,7 +137,7 @@ def test_a_jump_of_the_jerk_beneath_an_edge_counts(monkeypatch: pytest.MonkeyPat
         (own,) = [part for part in parts if part.theta[0] - 1e-9 <= line.mean() <= part.theta[-1] + 1e-9]
         return len(own.theta)
 
-    with_jump = columns(splines("bent", 0.002))
+    with_jump = columns(splines("short", 0.002))
     monkeypatch.setattr(made, "SECOND", 1e9)
     monkeypatch.setattr(made, "MIXED", 0.0)
     assert columns(trimmed(design, 0.002, lambda *_: [1.0, 1.0 + 0.5 * TURN])) < with_jump
@@ -148,7 +145,7 @@ def test_a_jump_of_the_jerk_beneath_an_edge_counts(monkeypatch: pytest.MonkeyPat
 
 @pytest.mark.slow
 def test_a_tolerance_that_is_too_small_names_one_that_serves(monkeypatch: pytest.MonkeyPatch) -> None:
-    design = designed("bent")
+    design = designed("short")
     with pytest.raises(ToleranceError, match="control points; give at least"):
         trimmed(design, 1e-8, lambda *_: [1.0, 4.0])
     with pytest.raises(ToleranceError, match="double precision"):
@@ -192,7 +189,7 @@ def test_lines_that_do_not_follow_one_another_bound_no_face() -> None:
 @pytest.mark.slow
 @pytest.mark.parametrize("name", TRACKS)
 def test_another_kernel_takes_the_solid_and_kin_both_files(tmp_path: Path, name: str) -> None:
-    tolerance = {"screw": 0.02, "spiral": 0.005, "bent": 0.05}[name]
+    tolerance = {"screw": 0.02, "spiral": 0.005, "short": 0.05}[name]
     path, design, off = written(tmp_path, TRACKS[name][0], tolerance)
     sound, measured = solids_of(path)
     assert sound
@@ -211,7 +208,7 @@ def test_another_kernel_takes_the_solid_and_kin_both_files(tmp_path: Path, name:
 @kernel
 @pytest.mark.costly("an export and its verification")
 def test_a_recipe_of_several_turns_with_a_step_file(tmp_path: Path) -> None:
-    text = changed(SPIRAL, ("[stl]", "[step]"))
+    text = "rotation: ccw\n" + changed(SHORT, ("[stl]", "[step]"))
     (tmp_path / "drum.yaml").write_text(text, encoding="utf-8")
     report = camgeo.export(str(tmp_path / "drum.yaml"), str(tmp_path / "out"))
     assert report.ok, str(report)
