@@ -206,9 +206,11 @@ def test_another_kernel_takes_the_solid_and_kin_both_files(tmp_path: Path, name:
 
 
 @kernel
+@pytest.mark.thin(2)
 @pytest.mark.costly("an export and its verification")
-def test_a_recipe_of_several_turns_with_a_step_file(tmp_path: Path) -> None:
-    text = "rotation: ccw\n" + changed(SHORT, ("[stl]", "[step]"))
+@pytest.mark.parametrize("text", ["rotation: ccw\n" + SHORT, SPIRAL], ids=["short", "spiral"])
+def test_a_recipe_of_several_turns_with_a_step_file(tmp_path: Path, text: str) -> None:
+    text = changed(text, ("[stl]", "[step]"))
     (tmp_path / "drum.yaml").write_text(text, encoding="utf-8")
     report = camgeo.export(str(tmp_path / "drum.yaml"), str(tmp_path / "out"))
     assert report.ok, str(report)
