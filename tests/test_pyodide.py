@@ -20,7 +20,7 @@ if TYPE_CHECKING:
     from pathlib import Path
 
 AGREE = 1e-9  # of figures in mm and degrees, absolute, and relative of those above 1
-TRIED = SHIPPED[::3]
+TRIED = SHIPPED[::5]
 PATIENCE = 1800.0  # s for all recipes, on a busy machine
 LEAST_FITTED = 5e-9  # the least, of what is measured of a file: handles of a spline lie where its error hardly changes
 

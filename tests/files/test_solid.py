@@ -202,7 +202,7 @@ def test_openings_in_line_leave_no_flat_triangle():
 
 
 @pytest.mark.thin(3)
-@pytest.mark.parametrize("number", few(range(120), 20))
+@pytest.mark.parametrize("number", few(range(60), 20))
 def test_random_parts_with_holes_are_covered_once_at_any_tolerance(number):
     """Grids, bolt circles and scattered holes, round, square and with corners in line, in a round or lobed rim."""
     random = np.random.default_rng(number)
