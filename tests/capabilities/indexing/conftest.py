@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING
 
 import pytest
 
-from camgeo.capabilities.indexing import exact
+from camgeo.capabilities.indexing import soundness
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -25,7 +25,7 @@ def proved_once(request: pytest.FixtureRequest) -> Iterator[None]:
     if request.config.getoption("markexpr") != "not slow":
         yield
         return
-    real, known = exact.demand_sound, set[bytes]()
+    real, known = soundness.demand_sound, set[bytes]()
 
     def demand_sound(design: IndexDesign) -> None:
         key = pickle.dumps([getattr(design.recipe, name) for name in PROVED])
@@ -34,5 +34,5 @@ def proved_once(request: pytest.FixtureRequest) -> Iterator[None]:
             known.add(key)
 
     with pytest.MonkeyPatch.context() as patch:
-        patch.setattr(exact, "demand_sound", demand_sound)
+        patch.setattr("camgeo.capabilities.indexing.exact.demand_sound", demand_sound)
         yield
