@@ -225,7 +225,7 @@ def test_recipes_come_back(case: Any, tmp_path: Path, capsys: pytest.CaptureFixt
 
 
 @pytest.mark.slow  # solids are made and followed
-@pytest.mark.parametrize("seed", [1, 10, 12, 15, 17, 35, 36, 37, 40])
+@pytest.mark.parametrize("seed", [1, 10, 36])
 def test_random_tracks_come_back(seed: int, tmp_path: Path) -> None:
     rows, text = random_track(random.Random(seed))
     recipe = camgeo.load(text)

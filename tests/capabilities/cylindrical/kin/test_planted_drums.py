@@ -201,12 +201,12 @@ def grooved(theta, side, depth):
     return Made(DRUM, STEPS, wall, [theta - half, theta, theta + half])
 
 
-@pytest.mark.slow  # two hundred whole verdicts
-@pytest.mark.parametrize("part", range(4))
+@pytest.mark.slow  # dozens of whole verdicts
+@pytest.mark.parametrize("part", range(2))
 def test_a_ridge_is_found_by_contact_and_a_notch_by_distance(intent, part):
     """0.02 mm wide and 0.02 high, between any two angles."""
     chance = np.random.default_rng(part)
-    for _ in range(25):
+    for _ in range(12):
         theta, side = chance.uniform(0.0, 2.0 * math.pi), int(chance.choice([-1, 1]))
         name = "lower" if side < 0 else "upper"
         ridge, notch = (grooved(theta, side, depth) for depth in (0.02, -0.02))
