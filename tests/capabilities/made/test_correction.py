@@ -137,7 +137,7 @@ def test_every_file_of_a_corrected_reuleaux_polygon_holds(sides, rounding, tmp_p
     text = polygon(sides, rounding) + MILL.replace("cutter: 6", "wheel: 200, cutter: 6")
     files = ", ".join(f"{{{form}}}" for form in FORMATS)
     report = camgeo.export(
-        written(tmp_path, text, runs_of(tmp_path, text, wavy, noise=0.0005), files, 0.005), tmp_path / "out"
+        written(tmp_path, text, runs_of(tmp_path, text, wavy, noise=0.0005), files), tmp_path / "out"
     )
     assert [check for check in report["checks"] if not check["ok"]] == []
     assert len(report["files"]) == len(FORMATS)

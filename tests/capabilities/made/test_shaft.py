@@ -328,7 +328,7 @@ def test_the_phase_scatters_as_its_uncertainty_says(tmp_path, monkeypatch):
     for seed in range(16):
         rng = np.random.default_rng(seed)
         monkeypatch.setattr(np.random, "default_rng", lambda _, rng=rng: rng)
-        file = written(tmp_path / "points.csv", shaft_points(recipe, noise=0.002, count=144))
+        file = written(tmp_path / "points.csv", shaft_points(recipe, noise=0.002, count=180))
         phases = [lobe["phase"] for lobe in camgeo.verify(recipe, file, spans=36)["made"]["lobes"]]
         lates.append([phase["late_deg"] for phase in phases])
         told.append([phase["uncertainty_deg"] for phase in phases])
