@@ -156,7 +156,7 @@ def test_a_jump_of_acceleration_leaves_no_corner_either(kind, tmp_path):
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("kind", ["roller on a stem", pytest.param("flat", marks=pytest.mark.slow)])
+@pytest.mark.parametrize("kind", ["roller on a stem"])
 def test_tables_that_grind_or_draw_the_contour_are_corrected(kind, tmp_path):
     """Where a wheel of 200 mm stands, and which way it faces, say where it leaves the metal."""
     text = plain(RECIPES[kind]) + "\nmanufacture: {wheel: 200}"
