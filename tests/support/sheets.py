@@ -5,7 +5,7 @@ from __future__ import annotations
 
 import functools
 from itertools import combinations
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from fontTools.ttLib import TTFont
@@ -23,12 +23,17 @@ BINDING, EDGE = 20.0, 10.0  # mm: margins of ISO 5457
 
 
 @functools.cache
+def font() -> tuple[Any, Any, Any, float]:
+    """Names by letter, outlines and advances of the letters' font, and the height of a capital in its units."""
+    read = TTFont(FONT)
+    return read.getBestCmap(), read["glyf"], read["hmtx"], CAPITALS * read["head"].unitsPerEm
+
+
+@functools.cache
 def ink(text: str) -> tuple[float, float, float, float]:
     """Least x and y, greatest x and y of the outlines of a text's letters, in heights of a capital, from its start."""
-    font = TTFont(FONT)
-    letters, outlines, advance = font.getBestCmap(), font["glyf"], font["hmtx"]
-    em, x = CAPITALS * font["head"].unitsPerEm, 0.0
-    boxes = []
+    letters, outlines, advance, em = font()
+    x, boxes = 0.0, []
     for letter in text:
         name = letters[ord(letter)]
         glyph = outlines[name]

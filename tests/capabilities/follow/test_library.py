@@ -505,9 +505,14 @@ TWO_ROLLERS: dict[str, Any] = {
 
 
 @pytest.mark.thin(42)
-@pytest.mark.parametrize("rotation", ["cw", "ccw"])
-@pytest.mark.parametrize("kind", ["dxf", "svg", "stl"])
-@pytest.mark.parametrize("name", MADE)
+@pytest.mark.parametrize(  # two kinds of file of each, and each kind in both senses
+    ("name", "kind", "rotation"),
+    [
+        (name, ("dxf", "svg", "stl")[(number + k) % 3], ("cw", "ccw")[(number + k) % 2])
+        for number, name in enumerate(MADE)
+        for k in range(2)
+    ],
+)
 def test_each_follower_on_each_kind_of_file(
     tmp_path: Path, name: str, kind: str, rotation: Literal["cw", "ccw"]
 ) -> None:

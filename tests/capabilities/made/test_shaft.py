@@ -92,7 +92,7 @@ def test_a_shaft_turned_as_one_is_turned_back_as_one(tmp_path, capsys):
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("rotation", [pytest.param("cw", marks=pytest.mark.slow), "ccw"])
+@pytest.mark.parametrize("rotation", ["ccw"])
 def test_lifts_are_those_of_the_shafts_own_table(rotation, tmp_path):
     """Its table of lifts over the shaft's angle is made without points, angles and metal: followers stand anywhere."""
     recipe = camshaft(tmp_path, more=f"rotation: {rotation}\n", files="[{csv: {as: motion}}]")
@@ -304,7 +304,7 @@ def test_a_folder_of_the_shaft_and_each_lobe(tmp_path, capsys):
 def test_the_uncertainty_of_axes_counts_as_they_act(tmp_path):
     """A turn of the axes is common to all lobes and no phase between them; a shift moves lobes by where they stand."""
     recipe = camshaft(tmp_path)
-    file = written(tmp_path / "points.csv", shaft_points(recipe))
+    file = written(tmp_path / "points.csv", shaft_points(recipe, count=180))
     turned = lobes_of(camgeo.verify(recipe, file, probe_error=0, axes_error=(0, 0.05)))
     for name in ("roller", "arm"):
         assert turned[name]["phase"]["uncertainty_deg"] == pytest.approx(0.05, rel=1e-6)
@@ -312,9 +312,9 @@ def test_the_uncertainty_of_axes_counts_as_they_act(tmp_path):
     shift = 0.01
     shifted = lobes_of(camgeo.verify(recipe, file, probe_error=0, axes_error=(shift, 0)))
     worst = dict.fromkeys(NAMES, 0.0)
-    for k in range(12):
+    for k in range(6):  # half a turn: the other half moves lobes as far the other way
         by = shift * np.exp(1j * k * math.pi / 6)
-        rows = [(name, z, x + by.real, y + by.imag) for name, z, x, y in shaft_points(recipe)]
+        rows = [(name, z, x + by.real, y + by.imag) for name, z, x, y in shaft_points(recipe, count=180)]
         lobes = lobes_of(camgeo.verify(recipe, written(tmp_path / "moved.csv", rows)))
         worst = {name: max(worst[name], abs(lobes[name]["phase"]["late_deg"])) for name in NAMES}
     for name in NAMES:
@@ -328,7 +328,7 @@ def test_the_phase_scatters_as_its_uncertainty_says(tmp_path, monkeypatch):
     for seed in range(16):
         rng = np.random.default_rng(seed)
         monkeypatch.setattr(np.random, "default_rng", lambda _, rng=rng: rng)
-        file = written(tmp_path / "points.csv", shaft_points(recipe, noise=0.002))
+        file = written(tmp_path / "points.csv", shaft_points(recipe, noise=0.002, count=180))
         phases = [lobe["phase"] for lobe in camgeo.verify(recipe, file, spans=36)["made"]["lobes"]]
         lates.append([phase["late_deg"] for phase in phases])
         told.append([phase["uncertainty_deg"] for phase in phases])

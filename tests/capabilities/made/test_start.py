@@ -15,16 +15,12 @@ from camgeo.capabilities.made.start import _verified
 from camgeo.cli import progress
 from camgeo.cli.main import main
 from camgeo.common.errors import CallError
-from kin.law.sources.laws import NAMES
 
 KINDS = [
     "roller on a stem",
     "knife edge on a stem",
-    "shoe on a stem",
-    "roller on a trailing arm",
     "roller on a leading arm",
     "ring",
-    "flat",
     "tilted flat",
     "flat on an arm",
 ]
@@ -154,7 +150,7 @@ def test_the_recipe_of_a_clean_cam_comes_back(kind, tmp_path, capsys):
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("kind", TWO_CONTACTS)
+@pytest.mark.parametrize("kind", [kind for kind in TWO_CONTACTS if kind not in {"groove", "yoke", "double roller"}])
 def test_the_recipe_of_a_clean_cam_with_two_contacts_comes_back(kind, tmp_path, capsys):
     text = TWO_CONTACTS[kind]
     assert start_all(tmp_path, text) == 0
@@ -213,7 +209,8 @@ def test_a_frame_under_a_linkage_comes_back(tmp_path):
     assert camgeo.export(tmp_path / "new.yaml", tmp_path / "out").ok
 
 
-LAWS = sorted(set(NAMES) - {"constant-velocity"})  # of which alone no motion is made
+# the three whose acceleration jumps, and three of the others, which tests of kin tell
+LAWS = ["cubic", "polynomial-345", "parabolic", "polynomial-23", "scca-33", "polynomial-4567"]
 
 
 @pytest.mark.slow

@@ -123,7 +123,7 @@ def compute_one(recipe, given, **how):
 
 
 @pytest.mark.slow
-@settings(deadline=None, max_examples=examples(40))
+@settings(deadline=None, max_examples=examples(15))
 @given(
     st.sampled_from(list(PATHS)),
     st.integers(-2100, 2100).map(lambda n: n / 100),

@@ -105,7 +105,7 @@ def test_estimates_are_near_the_exact_designs(name):
 
 
 @pytest.mark.slow
-@settings(deadline=None, max_examples=examples(40))
+@settings(deadline=None, max_examples=examples(15))
 @given(st.sampled_from(sorted(CAMS)), st.sampled_from(LAWS), st.lists(st.floats(0.0, 1.0), min_size=4, max_size=4))
 def test_estimates_anywhere_are_near_the_exact_designs(name, law, shares):
     text, ranges = CAMS[name]

@@ -283,7 +283,7 @@ def brute(one, other):
 
 
 @pytest.mark.slow
-@settings(max_examples=examples(12))
+@settings(max_examples=examples(6))
 @given(st.integers(0, 100_000))
 def test_against_brute_force(seed):
     rng = np.random.default_rng(seed)

@@ -1,6 +1,7 @@
 """Programs that mill a groove: what they leave, by which paths, and planted faults on either flank."""
 
 import math
+from functools import cache
 from pathlib import Path
 
 import numpy as np
@@ -143,11 +144,17 @@ INNER, OUTER = -6.0, 6.03  # places of the paths of a cutter of 6 mm, outward fr
 SOUND = {0.0: 0, 3.0: 0, -3.0: 0, INNER: 1, OUTER: -1}  # by place: side of the metal, 0 of a path that makes no flank
 
 
-def program(path, recipe, ways, *, depth=5.0, lead=2.0, turned=0.0, reversed_=(), shallow=(), named=6.0):
-    pitch = designed(recipe).exact.surfaces[0].base.shape
+@cache
+def way(place):
+    """The path at a place of the groove of `STEM`."""
+    pitch = designed(recipe_of()).exact.surfaces[0].base.shape
+    return begun_at(fit_arcs(Curve.whole(Parallel(pitch, -place)), 2e-5), 0.0)
+
+
+def program(path, ways, *, depth=5.0, lead=2.0, turned=0.0, reversed_=(), shallow=(), named=6.0):
     steps = []
     for place, side in ways.items():
-        along = begun_at(fit_arcs(Curve.whole(Parallel(pitch, -place)), 2e-5), 0.0)
+        along = way(place)
         c, s = math.cos(math.radians(turned)), math.sin(math.radians(turned))
         along = type(along)(along.points @ np.array([[c, s], [-s, c]]), along.bulges, along.bound)
         clockwise = (side >= 0) != (place in reversed_)
@@ -212,7 +219,7 @@ MADE = {
 @pytest.mark.parametrize("fault", MADE)
 def test_a_program_that_is_made_wrong(deep, tmp_path, fault):
     given, expected = MADE[fault]
-    program(tmp_path / "c.ngc", deep, **given)
+    program(tmp_path / "c.ngc", **given)
     found = failures(tmp_path / "c.ngc", deep)
     assert expected <= found if expected else not found, found
 
@@ -230,7 +237,7 @@ def test_a_program_for_another_cutter(tmp_path):
 def test_a_pass_that_is_left_out(deep, tmp_path):
     """Without the middle a flank's path takes the whole depth at once."""
     path = tmp_path / "c.ngc"
-    program(path, deep.replace("manufacture.depth_of_cut", 2), {INNER: 1, **without(INNER)})
+    program(path, {INNER: 1, **without(INNER)})
     assert ("depth", "") in failures(path, deep.replace("manufacture.depth_of_cut", 2))
 
 
