@@ -323,29 +323,27 @@ def _by_law(
     residuals = {}
     for name in NAMES:
 
-        def off(ends: Array, name: str = name) -> Array:
-            u = (shaft - ends[0]) / max(float(ends[1] - ends[0]), SHORTEST)
-            moved = _law_of(name, u, falls=falls)
-            columns = np.column_stack([1.0 - moved, moved])
-            level = np.linalg.lstsq(columns, position, rcond=None)[0]
-            left: Array = position - columns @ level
-            return left
+        def off(ends: Sequence[Array], name: str = name) -> list[Array]:
+            # the law is evaluated once for all: its calls are what takes long
+            u = [(shaft - begin) / max(float(end - begin), SHORTEST) for begin, end in ends]
+            found = []
+            for moved in np.split(_law_of(name, np.concatenate(u), falls=falls), len(u)):
+                columns = np.column_stack([1.0 - moved, moved])
+                level = np.linalg.lstsq(columns, position, rcond=None)[0]
+                found.append(position - columns @ level)
+            return found
 
         # Gauss and Newton over the free ends; levels follow linearly
         ends = np.array([0.0, length])
-        here = off(ends)
-        for _ in range(ROUNDS):
-            slopes = np.zeros((len(shaft), 2))
-            for k in np.flatnonzero(free):
-                step = np.zeros(2)
-                step[k] = ENDS_STEP
-                slopes[:, k] = (off(ends + step) - off(ends - step)) / (2.0 * ENDS_STEP)
-            if not free.any():
-                break
+        (here,) = off([ends])
+        for _ in range(ROUNDS if free.any() else 0):
+            steps = ENDS_STEP * np.eye(2)[free]
+            sides = off([*(ends + steps), *(ends - steps)])
+            rises = [more - less for more, less in zip(sides[: len(steps)], sides[len(steps) :], strict=True)]
             change = np.zeros(2)
-            change[free] = np.linalg.lstsq(slopes[:, free], -here, rcond=None)[0]
+            change[free] = np.linalg.lstsq(np.column_stack(rises) / (2.0 * ENDS_STEP), -here, rcond=None)[0]
             change = np.clip(change, -0.1 * length, 0.1 * length)
-            new = off(ends + change)
+            (new,) = off([ends + change])
             if not float(new @ new) < float(here @ here):
                 break
             ends, here = ends + change, new
