@@ -163,7 +163,7 @@ def judge_led(text: str, folder: Path) -> None:
 # --- developments and tables ------------------------------------------------------------------------------------------
 
 
-@pytest.mark.costly("a development of three radii is drawn and judged")
+@pytest.mark.slow
 def test_a_development_names_its_radii(tmp_path: Path) -> None:
     report = exported(tmp_path, DEVELOPED)
     assert report.ok, [str(check) for check in report.checks if not check.ok]

@@ -124,7 +124,7 @@ CASES = {
 
 
 @pytest.mark.costly("brute force over the positions of a cutter")
-@pytest.mark.thin(2)
+@pytest.mark.thin(4)
 @pytest.mark.parametrize("case", CASES)
 def test_the_cutter_leaves_the_flanks_that_rollers_leave(
     made: Callable[[str], tuple[Path, camgeo.Report]], case: str
@@ -186,6 +186,7 @@ def test_a_program_says_how_it_is_meant(made: Callable[[str], tuple[Path, camgeo
     assert {(each.name, each.file) for each in root_of(recipe).foresee(recipe)} <= found
 
 
+@pytest.mark.slow
 def test_a_drum_that_turns_the_other_way_has_the_mirrored_program(tmp_path: Path) -> None:
     text = program(GROOVE, ("[X, A]", "[X, Y, A]"), ("cutter: 20", "cutter: 18"))
     plain, mirrored = tmp_path / "a", tmp_path / "b"
@@ -235,7 +236,7 @@ def test_an_allowance_is_left_by_all_but_the_last_pass(tmp_path: Path) -> None:
     assert [run[3, 2] for run in runs] == [43.75, 43.75, 37.5, 37.5, 37.5, 37.5]
 
 
-@pytest.mark.costly("the one drum that is undercut, whose cuts take as long to find as all else")
+@pytest.mark.slow
 def test_a_cut_flank_takes_a_cutter_of_the_roller_s_size(tmp_path: Path) -> None:
     def program_of(cutter: str) -> Made[DrumVerdict]:
         recipe = recipe_of(program(UNDERCUT, ("cutter: 20", f"cutter: {cutter}")))

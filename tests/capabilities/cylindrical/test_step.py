@@ -281,7 +281,7 @@ def test_another_kernel_takes_the_solid_and_kin_both_files(tmp_path: Path, track
 
 
 @kernel
-@pytest.mark.costly("a solid and its verdict")
+@pytest.mark.slow
 def test_a_part_that_is_narrower_than_deep_is_judged(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(brep, "APART", 0.0)
     path, design, _ = written(tmp_path, NARROW, 0.001)
@@ -424,6 +424,7 @@ export: {tolerance: 1, files: [step]}
 """
 
 
+@pytest.mark.slow
 def test_a_coarse_solid_of_a_rib_on_an_arm_is_told(tmp_path: Path) -> None:
     """Its rollers stand so aslant that those shifted by half of the tolerance touch it otherwise."""
     pytest.importorskip("OCP")
@@ -450,7 +451,7 @@ export: {tolerance: 0.02, files: [step]}
 """
 
 
-@pytest.mark.costly("a solid and two verdicts")
+@pytest.mark.slow
 def test_a_steep_rib_on_an_arm_is_told(tmp_path: Path) -> None:
     """Its pressure angle is above 60 degrees; metal for a roller that is 0.1 larger is not taken for it."""
     pytest.importorskip("OCP")

@@ -405,7 +405,7 @@ def stepped(join: float) -> str:
     return re.sub("motion: .*\n", f"motion: [{rises}, {{return: 40, over: 360, law: modified-sine}}]\n", text)
 
 
-@pytest.mark.costly(DRUMS)
+@pytest.mark.slow
 def test_an_acceleration_that_jumps_on_an_edge_is_refused_and_beside_it_is_made() -> None:
     """A degree beside it, where the remedy leads, the break is a column of its own: the solid is within tolerance."""
     with pytest.raises(RecipeErrors, match="jumps on the edge of a crossing, near 204 degrees; let segments meet"):

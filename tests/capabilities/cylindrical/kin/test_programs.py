@@ -196,6 +196,7 @@ def test_a_cut_flank_of_a_led_roller_is_judged_by_the_path(tmp_path, kind):
     assert refused(led(tmp_path, drum, cutting=smaller, head="")) == {"contour"}
 
 
+@pytest.mark.slow
 def test_a_cutter_of_another_cone_is_named(tmp_path):
     drum = LED["cone"]
     verdict = led(tmp_path, drum, head=named(drum).replace("angle 6.0", "angle 6.1"))
