@@ -213,7 +213,7 @@ def test_a_recipe_runs_once_and_not_before_its_first_item(project: Pytester, cou
     assert counted == ["tiny"]
 
 
-@pytest.mark.thin(4)
+@pytest.mark.thin(2)
 @pytest.mark.parametrize(
     ("file", "text"),
     [
@@ -248,7 +248,6 @@ def test_paths_are_relative_to_the_configuration_wherever_root_and_call_are(
     assert len(collected(pytester, "../cams/small.yaml")) == len(ITEMS)
 
 
-@pytest.mark.slow
 def test_recipes_may_lie_outside_the_root(pytester: Pytester, monkeypatch: pytest.MonkeyPatch) -> None:
     add(pytester, "small", SMALL, "shared")
     (pytester.path / "project").mkdir()
@@ -381,7 +380,6 @@ def test_undercut_is_told_where_it_is_and_all_else_waits(project: Pytester) -> N
     alone.stdout.fnmatch_lines(["motion*: not judged: radius-of-curvature: -1 mm, more than 0 mm*"])
 
 
-@pytest.mark.slow
 def test_what_trimming_leaves_unjudged_is_skipped_with_the_reason(project: Pytester) -> None:
     add(project, "small", UNDERCUT.replace("cos(3*t)", "cos(3*t), undercut: trim"))
     result = run(project, "-rs", "-k", "motion")
@@ -389,7 +387,6 @@ def test_what_trimming_leaves_unjudged_is_skipped_with_the_reason(project: Pytes
     result.stdout.fnmatch_lines(["SKIPPED*small.yaml: an undercut is trimmed*verify.motion_error*"])
 
 
-@pytest.mark.slow
 def test_a_check_that_was_not_foreseen_fails_the_recipe_itself(
     project: Pytester, monkeypatch: pytest.MonkeyPatch
 ) -> None:
@@ -401,7 +398,6 @@ def test_a_check_that_was_not_foreseen_fails_the_recipe_itself(
     )
 
 
-@pytest.mark.slow
 def test_a_check_that_was_foreseen_and_not_made_fails(project: Pytester, monkeypatch: pytest.MonkeyPatch) -> None:
     spoil(monkeypatch, lambda checks: [check for check in checks if check["name"] != "motion"])
     result = run(project)
@@ -575,7 +571,6 @@ def test_keeping_files_needs_a_name(project: Pytester) -> None:
     result.stderr.fnmatch_lines(["*--camgeo-out: an empty name*"])
 
 
-@pytest.mark.slow
 def test_files_of_any_origin_are_verified_beside_their_recipe(project: Pytester) -> None:
     pipeline.export(load(project.path / "cams" / "small.yaml"), project.path / "out")
     drawing = project.path / "out" / "small" / "small.dxf"

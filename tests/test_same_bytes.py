@@ -68,7 +68,6 @@ def test_a_planted_change_is_found(recipe, tmp_path):
     assert any(line.startswith("small/report.json: ") and ", now " in line for line in lines)
 
 
-@pytest.mark.slow
 def test_a_hundred_random_recipes_have_everything(tools):
     random_recipes, _ = tools
     made = [random_recipes.made(0, slot) for slot in range(100)]

@@ -12,7 +12,7 @@ from support.places import RECIPES
 import camgeo
 
 
-@pytest.mark.slow
+@pytest.mark.costly("exports and a process, as they are what is counted")
 def test_an_export_is_one_and_a_process_counts(tmp_path):
     count = work.Work()
     count.count()

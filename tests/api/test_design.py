@@ -45,7 +45,7 @@ def test_the_motion_is_that_of_the_table(design: camgeo.Design, tmp_path: Path) 
         assert np.abs(at - shown).max() <= 1e-6 * max(1.0, np.abs(shown).max())
 
 
-@pytest.mark.thin(4)
+@pytest.mark.thin(2)
 def test_derivatives_are_those_of_the_motion(design: camgeo.Design) -> None:
     theta, step = np.array([0.31, 1.7, 2.9, 4.4]), 1e-5
     for order in range(2):
@@ -56,7 +56,6 @@ def test_derivatives_are_those_of_the_motion(design: camgeo.Design) -> None:
         assert np.allclose(slope, found, rtol=1e-5, atol=1e-5 * max(1.0, np.abs(found).max()))
 
 
-@pytest.mark.thin(2)
 def test_shapes_go_through(design: camgeo.Design) -> None:
     grid = np.array([[0.1, 0.2, 0.3], [4.0, 5.0, 6.0]])
     assert design.motion(grid).shape == (2, 3)
@@ -67,7 +66,6 @@ def test_shapes_go_through(design: camgeo.Design) -> None:
     assert design.motion(0.2 + 6 * math.pi) == pytest.approx(one, abs=1e-9)
 
 
-@pytest.mark.thin(2)
 def test_the_contour_is_that_of_the_edges(design: camgeo.Design) -> None:
     """Area within the points and within the arcs; each point within the proved bound of an arc."""
     points, edges = design.contour(4000), design.edges(0.01)
@@ -98,7 +96,6 @@ def distance(edge: object, point: np.ndarray) -> float:
     return ends
 
 
-@pytest.mark.thin(2)
 def test_arcs_hold_together(design: camgeo.Design) -> None:
     edges = design.edges(0.01)
     for i, edge in enumerate(edges):
@@ -188,7 +185,6 @@ def test_what_makes_no_sense_is_refused() -> None:
         design.edges(1e-16)
 
 
-@pytest.mark.thin(2)
 def test_a_pickle_is_the_same_design(design: camgeo.Design) -> None:
     assert design.figures
     again = pickle.loads(pickle.dumps(design))
@@ -198,7 +194,7 @@ def test_a_pickle_is_the_same_design(design: camgeo.Design) -> None:
     assert again.checks == design.checks
 
 
-@pytest.mark.thin(6)
+@pytest.mark.thin(3)
 def test_it_shows_itself(design: camgeo.Design) -> None:
     svg, html = design._repr_svg_(), design._repr_html_()
     assert svg.startswith("<svg")
@@ -210,7 +206,6 @@ def test_it_shows_itself(design: camgeo.Design) -> None:
     assert all(check._repr_html_().startswith("<p") for check in design.checks)
 
 
-@pytest.mark.thin(2)
 def test_what_a_design_hands_out_can_be_pickled_alone(design: camgeo.Design) -> None:
     figures = pickle.loads(pickle.dumps(design.figures))
     assert figures == design.figures

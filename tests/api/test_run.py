@@ -64,7 +64,6 @@ def closed(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
     return tmp_path
 
 
-@pytest.mark.thin(2)
 @pytest.mark.parametrize("name", FILES)
 def test_a_file_that_nobody_may_read_is_a_line(name: str, closed: Path, capsys: pytest.CaptureFixture[str]) -> None:
     recipe, file = closed / "cam.yaml", closed / name

@@ -53,7 +53,6 @@ def refused(*args: str, **kwargs: str) -> str:
     return str(error).removeprefix("pair.yaml:")
 
 
-@pytest.mark.thin(3)
 @pytest.mark.parametrize(
     ("follower", "conjugate", "message", "repair"),
     [
@@ -181,7 +180,7 @@ def test_a_stem_with_its_offset_given_is_sized_by_both_discs() -> None:
     within(pair(follower, f"distance: {least}", size=size), 30, 30)
 
 
-@pytest.mark.slow
+@pytest.mark.thin(2)
 @pytest.mark.parametrize("side", ["trailing", "leading"])
 def test_a_bell_crank_is_sized_by_both_discs(side: str) -> None:
     """No pivot near the one that was found keeps the limits on both discs with a smaller base radius."""
@@ -197,7 +196,6 @@ def test_a_bell_crank_is_sized_by_both_discs(side: str) -> None:
         assert max(angles[0] - 35, angles[1] - 30, angles[2] - 35, angles[3] - 30) > 1e-3
 
 
-@pytest.mark.slow
 def test_flat_faces_are_sized_by_both_discs() -> None:
     size = "sizing: {radius-of-curvature: {at_least: 30}}"
     assert pair("kind: flat", "distance: 90", LOW, size).contours
@@ -229,7 +227,6 @@ def test_figures_are_of_the_worst_disc() -> None:
     assert found["pressure-angle-rise"].value == pytest.approx(-math.degrees(math.atan(low.value)), abs=1e-9)
 
 
-@pytest.mark.slow
 def test_remarks_say_which_size_would_keep_the_rules() -> None:
     cam = recipe(STEM, "distance: 85, radius: 8")
     told = {remark.name: remark.sentence for remark in remarks_of(cam, designed(cam))}
@@ -276,7 +273,6 @@ def test_undercut_under_two_faces_and_what_frees_it() -> None:
     assert both.contours
 
 
-@pytest.mark.slow
 def test_limits_of_disc_2_name_what_helps() -> None:
     limit = "limits: {radius-of-curvature: {at_least: 12}, pressure-angle: {at_most: 30}}\n"
     cam = recipe(STEM, "distance: 85, radius: 8", more=limit)
@@ -308,7 +304,6 @@ def test_a_tiny_and_a_large_second_roller(radius: float) -> None:
     assert np.hypot(*second.curve.sample(angle).point.T) == pytest.approx(0.01 * radius, abs=1e-12)
 
 
-@pytest.mark.slow
 def test_arms_square_to_the_line_of_centres() -> None:
     """Where arm 2 points at the tangent from the pivot b = C sin psi2 is greatest, and nothing is singular there."""
     psi = math.degrees(math.acos((80**2 + 65**2 - 44**2) / (2 * 80 * 65)))

@@ -6,9 +6,9 @@ Holds: camgeo.cams.family, camgeo.cams.follower.
 import json
 import math
 
+import ezdxf
 import numpy as np
 import pytest
-from support.heavy import ezdxf
 from support.intent import findings
 from support.kernel import kernel
 
@@ -97,6 +97,7 @@ def test_every_format_holds_its_corners(text, tmp_path):
 
 @pytest.mark.slow
 @kernel
+@pytest.mark.thin(2)
 @pytest.mark.parametrize("text", SHARP.values(), ids=SHARP)
 def test_step_holds_its_corners(text, tmp_path):
     body = "part: {thickness: 8, bore: 8}\nexport: {tolerance: 0.001, files: [step]}\n"
@@ -106,7 +107,6 @@ def test_step_holds_its_corners(text, tmp_path):
     assert away.max() < 1e-12
 
 
-@pytest.mark.thin(2)
 @pytest.mark.parametrize("text", SHARP.values(), ids=SHARP)
 def test_the_radius_is_told_and_no_undercut(text, tmp_path):
     report = export(recipe_of(text), tmp_path)
@@ -271,7 +271,7 @@ def test_a_corner_that_is_off_is_seen(text, which, fault):
         assert checks["motion"].value == pytest.approx(0.001, rel=1e-3)
 
 
-@pytest.mark.thin(4)
+@pytest.mark.thin(2)
 @pytest.mark.parametrize("text", SHARP.values(), ids=SHARP)
 @pytest.mark.parametrize("which", [0, 1, 2])
 def test_an_arc_about_another_centre_is_seen(text, which):

@@ -36,7 +36,6 @@ def table(tmp_path):
     return tmp_path
 
 
-@pytest.mark.thin(2)
 @pytest.mark.parametrize(
     ("motion", "follower", "units", "greatest"),
     [

@@ -25,7 +25,7 @@ if TYPE_CHECKING:
 SHIPPED = sorted((ROOT / "recipes").glob("*.yaml"))
 
 
-@pytest.mark.thin(6)
+@pytest.mark.thin(3)
 @pytest.mark.parametrize("path", SHIPPED, ids=lambda path: path.stem)
 def test_a_follower_is_drawn_and_its_checks_are_made(path: Path) -> None:
     recipe = load(path)
@@ -72,7 +72,6 @@ EACH = (
 )
 
 
-@pytest.mark.thin(3)
 @pytest.mark.parametrize("name", EACH)
 def test_an_exact_cam_goes_to_another_process(name: str) -> None:
     exact = load(ROOT / "recipes" / f"{name}.yaml").cam.exact()

@@ -16,7 +16,6 @@ linkage: {kind: inverted-slider-crank, ground: 150, rocker: 20, joint_offset: OF
 """
 
 
-@pytest.mark.thin(2)
 @pytest.mark.parametrize(("assembly", "offset"), [("open", "7"), ("crossed", "-5")])
 def test_the_output_is_the_law(assembly: str, offset: str) -> None:
     """20 (u - sin(2 pi u)/2 pi) at u = 1/4 and 1/2, then the dwell."""

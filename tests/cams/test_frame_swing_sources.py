@@ -56,7 +56,6 @@ def test_the_way_back_is_the_image() -> None:
     assert back == pytest.approx(-there, abs=1e-11)
 
 
-@pytest.mark.slow
 def test_a_formula() -> None:
     found = output(cam("{formula: 4*sin(t)**3}"), [30.0, 90.0, 180.0])
     assert found == pytest.approx([0.5, 4.0, 0.0], abs=1e-11)

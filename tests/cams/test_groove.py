@@ -37,7 +37,6 @@ def undercut(recipe):
     return {check.surface: check.detail for check in failed}
 
 
-@pytest.mark.slow
 @pytest.mark.parametrize(
     ("base", "radius", "flank"),
     [(16, 26, "outer"), pytest.param(20, 22, "inner", marks=pytest.mark.slow)],
@@ -60,7 +59,7 @@ SIZED = {
 }
 
 
-@pytest.mark.slow
+@pytest.mark.thin(2)
 @pytest.mark.parametrize("name", SIZED)
 def test_a_size_obeys_both_flanks(name):
     """Least radii of the metal from 3600 points: the path bends outward at the inner flank, inward at the outer one."""

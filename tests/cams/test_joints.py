@@ -56,7 +56,6 @@ def test_joints_are_told_in_inches():
     assert "in/rad^2 at 90 degrees" in remark["sentence"]
 
 
-@pytest.mark.thin(2)
 @pytest.mark.parametrize(
     ("motion", "order"),
     [
@@ -72,7 +71,6 @@ def test_what_jumps_first_is_told(motion, order):
     assert ("acceleration-jump" in {one["name"] for one in found["remarks"]}) == (order == 2)
 
 
-@pytest.mark.thin(4)
 @pytest.mark.parametrize(
     "motion",
     [
@@ -86,7 +84,6 @@ def test_a_smooth_motion_has_no_joints(motion):
     assert report(f"{BREADTH}, motion: {motion}")["joints"] == []
 
 
-@pytest.mark.slow
 def test_joints_of_a_swing_are_those_of_its_period():
     """With psi' = 0 the image of psi over the next delta has -psi'' (W 4.9)."""
     a = 4 / 2 * (math.pi / math.radians(45)) ** 2
@@ -99,7 +96,6 @@ def test_joints_of_a_swing_are_those_of_its_period():
     ]
 
 
-@pytest.mark.slow
 def test_a_first_arc_by_a_formula_tells_its_joints():
     cam = f"{ROLLER.replace('2,', '3,', 1)}, arc: {{formula: 120*cos(pi/6) + 2*sin(3*t)}}"
     first, second = jumps(cam, 2)
@@ -151,7 +147,6 @@ def test_a_formula_of_a_route_is_refused_at_its_field(route, problem):
     assert problem in str(error)
 
 
-@pytest.mark.slow
 def test_d_by_a_formula_passes_for_rollers_and_flats():
     assert report(f"{ROLLER.replace('2,', '4/3,', 1)}, delta: {{formula: 600*cos(4*t) + 40*cos(4*t)**3}}")["ok"]
     assert report("kind: flat-pair, ratio: 2, arm: 30, delta: {formula: 200*cos(2*t)}")["ok"]
@@ -179,7 +174,6 @@ def of_swing(segments, order):
     return [(one["at_deg"], one["before"], one["after"]) for one in found["joints"] if one["derivative"] == order]
 
 
-@pytest.mark.slow
 def test_the_joints_of_a_frames_swing_stand_at_the_shafts_angles():
     """At 140 degrees, where the rise ends, and at 0, where the law follows its own image."""
     a = 20 / 2 * (180 / 140) ** 2

@@ -60,7 +60,6 @@ def test_a_stroke_beyond_the_bound_is_refused_with_what_would_do(
     assert told.endswith(f"; give displacements that differ by {MOST:.0f} at most")
 
 
-@pytest.mark.thin(3)
 @pytest.mark.parametrize("units", ["mm", "inch"])
 @pytest.mark.parametrize(
     "motion",

@@ -202,7 +202,6 @@ def test_what_is_marked_goes() -> None:
     assert without_marked(page, "dynamics") == page
 
 
-@pytest.mark.slow
 @pytest.mark.parametrize("place", LISTS)
 def test_a_list_of_pages_needs_no_marks(place: str) -> None:
     """What goes with a capability is told by its label, and each such line stands for itself."""

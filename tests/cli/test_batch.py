@@ -26,7 +26,6 @@ def recipes(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     (tmp_path / "late.yaml").write_text(SOUND.replace("25 + 2*cos(3*t)", "25 + t"))
 
 
-@pytest.mark.thin(2)
 @pytest.mark.usefixtures("recipes")
 @pytest.mark.parametrize("command", ["check", "export"])
 def test_every_recipe_of_a_call_is_in_its_json(command: str, capsys: pytest.CaptureFixture[str]) -> None:

@@ -143,7 +143,6 @@ def test_two_recipes_of_one_name_are_an_error(good: Path, tmp_path: Path, capsys
     assert not (tmp_path / "out").exists()
 
 
-@pytest.mark.slow
 def test_several_recipes_run_in_order_and_the_highest_status_counts(
     tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:

@@ -23,7 +23,6 @@ def recipes(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
     return tmp_path
 
 
-@pytest.mark.slow
 def test_several_recipes_have_a_page_each(recipes: Path, capsys: pytest.CaptureFixture[str]) -> None:
     assert main(["report", "sound.yaml", "sharp.yaml"]) == 1
     lines = capsys.readouterr().out.splitlines()

@@ -45,7 +45,6 @@ def test_one_harmonic_has_its_least_radius_at_the_crest(mean, share, k):
         assert math.cos(k * at) == pytest.approx(1.0, abs=1e-6)
 
 
-@pytest.mark.thin(2)
 @pytest.mark.parametrize("k", range(3))
 def test_several_harmonics_agree_with_mpmath(k):
     cos, sin = [({3: 2.0, 7: 0.05}, {5: 0.1}), ({2: 1.0}, {3: 1.0, 11: 0.02}), ({5: 0.3, 6: 0.3, 7: 0.3}, {})][k]
@@ -67,7 +66,6 @@ def test_several_harmonics_agree_with_mpmath(k):
     assert value == pytest.approx(float(exact), rel=1e-13)
 
 
-@pytest.mark.thin(2)
 @pytest.mark.parametrize("m2", [300.0, 1200.0, 1800.0, 2880.0])
 def test_booths_lemniscate_is_bent_most_at_its_ends(m2):
     # at t = 0: r r'' = -4 m^2, kappa = (r^2 + 4 m^2)/r^3
@@ -77,7 +75,6 @@ def test_booths_lemniscate_is_bent_most_at_its_ends(m2):
     assert math.sin(at) == pytest.approx(0.0, abs=1e-5)
 
 
-@pytest.mark.thin(2)
 @pytest.mark.parametrize("e", [8.0, 45.0, 70.0])
 def test_a_parallel_curve_has_so_much_less(e):
     shape = booth(60.0, 40.0)
@@ -114,7 +111,6 @@ def test_a_rounded_corner_is_the_least_radius(rounding):
     assert value == pytest.approx(rounding, abs=1e-14)
 
 
-@pytest.mark.thin(2)
 @pytest.mark.parametrize("e", [8.0, 30.0, 80.0])
 def test_a_circular_first_arc(e):
     # W Figure 5: the pitch curve begins with an arc of 75 mm, run along at a changing speed
@@ -137,7 +133,6 @@ def test_an_arc_too_tight_for_the_roller(radius):
     assert base.sample(np.array([at])).speed[0] == pytest.approx(radius)
 
 
-@pytest.mark.thin(2)
 @pytest.mark.parametrize("place", [0.1, 2.345, 5.0])
 def test_a_narrow_dip_is_not_missed(place):
     # rho falls from 20 by 22 within a few thousandths of a radian, the curve's other 6.28 are a circle

@@ -65,7 +65,7 @@ def test_a_limacon_has_its_closed_area() -> None:
     assert found.perimeter == pytest.approx(float(mp.quad(speed, [0, mp.pi, 2 * mp.pi])), rel=1e-13)
 
 
-@pytest.mark.thin(6)
+@pytest.mark.thin(3)
 @pytest.mark.parametrize("name", CONTOURS)
 def test_against_the_polygon_and_dense_samples(name: str) -> None:
     curve = Curve.whole(CONTOURS[name])
@@ -84,7 +84,6 @@ def test_against_the_polygon_and_dense_samples(name: str) -> None:
         assert np.hypot(*curve.sample(np.array([one.at])).point[0]) == pytest.approx(one.value, abs=1e-11)
 
 
-@pytest.mark.slow
 def test_of_a_trimmed_contour() -> None:
     curve = trimmed(Curve.whole(Parallel(CentreShape(M15, Translating.on(26.0)), 18.0)))
     assert len(curve.runs) > 1

@@ -52,7 +52,7 @@ def test_the_spline_is_the_wave():
     assert (high[0] >= off).all()
 
 
-@pytest.mark.thin(24)
+@pytest.mark.thin(4)
 @pytest.mark.parametrize("kind", list(RECIPES))
 def test_frames_are_those_of_the_moved_points(kind):
     for contour, curve in moved(kind, spline()):
@@ -75,7 +75,7 @@ def test_frames_are_those_of_the_moved_points(kind):
         assert (after.turn - before.turn) / (2.0 * h) == pytest.approx(frame.turn_slope, rel=1e-4, abs=1e-3)
 
 
-@pytest.mark.thin(16)
+@pytest.mark.thin(8)
 @pytest.mark.parametrize("kind", list(RECIPES))
 def test_bounds_hold_on_every_cell(kind):
     random = np.random.default_rng(3)

@@ -92,7 +92,6 @@ def test_round_walls(shapes: list[tuple[int, int, float, int]]) -> None:
                 assert_covered(loops)
 
 
-@pytest.mark.thin(3)
 @pytest.mark.usefixtures("alone")
 @pytest.mark.parametrize("count", [3, 4, 5, 6, 97, pytest.param(1500, marks=pytest.mark.slow)])
 def test_holes_on_a_circle_in_a_lobed_contour(count: int) -> None:

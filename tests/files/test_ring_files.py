@@ -79,6 +79,7 @@ def test_solids_have_the_volume_of_the_ring(tmp_path):
 
 
 @pytest.mark.slow
+@pytest.mark.thin(2)
 @pytest.mark.parametrize("form", ["arcs", "spline"])
 def test_a_step_file_has_the_volume_of_the_ring(tmp_path, form):
     pytest.importorskip("OCP")
@@ -144,7 +145,7 @@ FAULTS = {
 }
 
 
-@pytest.mark.thin(8)
+@pytest.mark.thin(4)
 @pytest.mark.parametrize("fault", FAULTS)
 def test_a_spoilt_ring_is_caught(tmp_path, fault):
     recipe = ring("{outer: 130}")

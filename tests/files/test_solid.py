@@ -84,7 +84,6 @@ def test_shaped_bores_in_any_version(tmp_path, version, bore):
     assert not ezdxf.readfile(path).audit().has_errors
 
 
-@pytest.mark.slow
 def test_inch_drawing_is_in_inches_and_its_solid_in_millimetres(tmp_path):
     cam = "units: inch\ncam: {kind: support, p: 1 + 0.05*cos(3*t)}\n"
     bolts = "bolts: {count: 4, circle: 1.3, hole: 0.125}"
@@ -120,7 +119,6 @@ def test_counter_clockwise_mirrors_every_feature(tmp_path):
 # --- STL: prisms ----------------------------------------------------------------------------------------------------
 
 
-@pytest.mark.slow
 def test_prism_with_openings_by_trimesh_and_closed_forms(tmp_path):
     part = (
         "{thickness: 8, bore: 12, keyway: din6885, bolts: {count: 5, circle: 32, hole: 4}, mark: {as: cut, width: 1}}"
@@ -134,7 +132,6 @@ def test_prism_with_openings_by_trimesh_and_closed_forms(tmp_path):
     assert mesh.volume == pytest.approx(8 * area, rel=1e-4)  # arcs of keyway and slot are chords inside them
 
 
-@pytest.mark.thin(4)
 @pytest.mark.parametrize("outline", [keyed(6, 4, 1.8, 0.7), flattened(6, 10.5, 2), polygonal(6, 10, 0.1), slot(3, 9, 2),
                                      disc("", "HOLES", (5.0, 3.0), 2.0).outline])  # fmt: skip
 @pytest.mark.parametrize("tolerance", [0.1, 1e-3, 1e-5])
@@ -175,7 +172,7 @@ def test_regions_with_holes_are_covered_once(count, corners, turn, random):
     covers_once(SQUARE, holes)
 
 
-@pytest.mark.thin(6)
+@pytest.mark.thin(3)
 @pytest.mark.parametrize("corners", few([3, 4, 5, 7, 24], 3))
 @pytest.mark.parametrize("turn", [0.0, 0.5, math.pi / 4])
 @pytest.mark.parametrize("side", [3, 5, 9])
@@ -194,14 +191,12 @@ def test_holes_that_meet_each_other_or_the_rim_have_no_region(other):
         region(SQUARE, [square, square + other])
 
 
-@pytest.mark.slow
 def test_openings_in_line_leave_no_flat_triangle():
     """Sides of all squares of a grid lie on its lines, and so do 73 of the ears clipped between them."""
     square = np.array([[0, 0], [1, 0], [1, 1], [0, 1]], dtype=float)
     covers_once(SQUARE, [np.add(square, (x, y)) for x in range(-28, 28, 2) for y in range(-28, 28, 2)])
 
 
-@pytest.mark.thin(3)
 @pytest.mark.parametrize("number", few(range(60), 20))
 def test_random_parts_with_holes_are_covered_once_at_any_tolerance(number):
     """Grids, bolt circles and scattered holes, round, square and with corners in line, in a round or lobed rim."""

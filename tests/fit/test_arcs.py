@@ -148,7 +148,7 @@ def test_edges_that_would_be_the_worse_for_it_are_not_moved() -> None:
     assert fit_polygon(curve, 1e-5).vertices.shape[0] <= 1.004 * least_vertices(curve, 1e-5)
 
 
-@pytest.mark.thin(12)
+@pytest.mark.thin(6)
 @pytest.mark.parametrize("tolerance", few(TOLERANCES, 2))
 def test_polygon_is_proved_full_and_small(lift: Lift, tolerance: float) -> None:
     curve = Curve.whole(SupportShape(lift))
@@ -161,7 +161,7 @@ def test_polygon_is_proved_full_and_small(lift: Lift, tolerance: float) -> None:
     assert polygon.count <= max(math.ceil(1.01 * least) + 1 + len(lift.breaks), 3)
 
 
-@pytest.mark.thin(12)
+@pytest.mark.thin(6)
 @pytest.mark.parametrize("tolerance", few(TOLERANCES, 2))
 def test_arcs_are_proved_and_few(lift: Lift, tolerance: float) -> None:
     curve = Curve.whole(SupportShape(lift))
@@ -175,7 +175,7 @@ def test_arcs_are_proved_and_few(lift: Lift, tolerance: float) -> None:
     assert arcs.count <= 1.05 * least + 4 * (len(lift.breaks) + extrema) + 2
 
 
-@pytest.mark.thin(12)
+@pytest.mark.thin(6)
 @pytest.mark.parametrize("tolerance", few(TOLERANCES, 2))
 def test_spline_is_proved(lift: Lift, tolerance: float) -> None:
     spline = fit_spline(Curve.whole(SupportShape(lift)), tolerance)

@@ -16,7 +16,6 @@ CURVE = Curve.whole(SupportShape(lift_from_fourier(25.0, {3: 2.0}, {})))
 FORMS = ("polyline", "arcs", "spline")
 
 
-@pytest.mark.thin(2)
 @pytest.mark.parametrize("form", FORMS)
 def test_a_fit_is_made_once_and_keeps_its_tolerance(form: str) -> None:
     fits = Fits(CURVE, Clock())
@@ -26,7 +25,6 @@ def test_a_fit_is_made_once_and_keeps_its_tolerance(form: str) -> None:
     assert 0.0003 < max(fine.bound.outward, fine.bound.inward) <= 0.001
 
 
-@pytest.mark.thin(2)
 @pytest.mark.parametrize("form", FORMS)
 def test_what_a_formula_loses_comes_off_the_tolerance_and_into_the_bound(form: str) -> None:
     sure, unsure = Fits(CURVE, Clock()).within(form, 0.008), Fits(CURVE, Clock(), 0.001).within(form, 0.01)

@@ -62,7 +62,6 @@ def limit(chain: Chain) -> float:
     return 0.5 * (truth + first)
 
 
-@pytest.mark.thin(3)
 @pytest.mark.parametrize("bend", [0.0, 1.0, 2.0])
 @pytest.mark.parametrize("count", [12, 36, 200])
 def test_what_is_proved_holds_and_is_sharp_on_both_sides(count: int, bend: float) -> None:
@@ -78,7 +77,6 @@ def test_what_is_proved_holds_and_is_sharp_on_both_sides(count: int, bend: float
     assert (sampled_deviation(CURVE, chain, 8) <= found.worst).all()
 
 
-@pytest.mark.thin(2)
 @pytest.mark.parametrize("bend", [0.0, 2.0])
 def test_what_hangs_on_the_proof_is_decided_where_that_is_asked_for(bend: float) -> None:
     chain = pieces(60, bend)

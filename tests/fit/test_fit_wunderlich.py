@@ -142,7 +142,7 @@ def check_proof(
     assert np.abs(gap).max() >= fitted.bound.worst - slack * tolerance - floor
 
 
-@pytest.mark.thin(12)
+@pytest.mark.thin(6)
 @pytest.mark.parametrize("tolerance", few(TOLERANCES, 2))
 def test_polygon_is_proved_full_and_small(case: Case, tolerance: float) -> None:
     curve = Curve.whole(case.shape)
@@ -154,7 +154,7 @@ def test_polygon_is_proved_full_and_small(case: Case, tolerance: float) -> None:
     assert polygon.count <= math.ceil(1.01 * least_vertices(curve, tolerance)) + 1 + case.breaks
 
 
-@pytest.mark.thin(12)
+@pytest.mark.thin(6)
 @pytest.mark.parametrize("tolerance", few(TOLERANCES, 2))
 def test_arcs_are_proved_and_few(case: Case, tolerance: float) -> None:
     curve = Curve.whole(case.shape)
@@ -165,14 +165,14 @@ def test_arcs_are_proved_and_few(case: Case, tolerance: float) -> None:
     assert arcs.count <= 1.05 * least + 4 * (case.breaks + case.extrema)
 
 
-@pytest.mark.thin(12)
+@pytest.mark.thin(6)
 @pytest.mark.parametrize("tolerance", few(TOLERANCES, 2))
 def test_spline_is_proved(case: Case, tolerance: float) -> None:
     spline = fit_spline(Curve.whole(case.shape), tolerance)
     check_proof(case, spline, spline_points(spline, some(spline.spans)), tolerance, 0.05)
 
 
-@pytest.mark.thin(6)
+@pytest.mark.thin(3)
 @pytest.mark.parametrize("tolerance", TOLERANCES[:2])
 def test_curve_is_near_the_polygon_too(case: Case, tolerance: float) -> None:
     """The other half of the Hausdorff distance: no point of the contour is farther from every edge than promised."""
@@ -230,7 +230,6 @@ def test_a_moved_vertex_is_seen() -> None:
     assert np.abs(outward(case, vertices)).max() > 2e-3
 
 
-@pytest.mark.thin(3)
 @pytest.mark.parametrize("kind", [PitchShape, FlatPairShape])
 @pytest.mark.parametrize("route", ["cosines", "with sines", "arc"])
 def test_rates_by_hand_are_those_of_series(kind: type[PitchShape | FlatPairShape], route: str) -> None:
@@ -249,7 +248,6 @@ def test_rates_by_hand_are_those_of_series(kind: type[PitchShape | FlatPairShape
     assert at.turn_slope == pytest.approx(turn[1], rel=1e-13, abs=1e-13 * np.abs(turn[1]).max())
 
 
-@pytest.mark.thin(3)
 def test_cells_of_one_period_hold_over_the_whole_turn(case: Case) -> None:
     curve = Curve.whole(case.shape)
     cells = curve.cells
@@ -275,7 +273,7 @@ def needle(share: float, t: float) -> tuple[mp.mpf, mp.mpf, mp.mpf]:
     return a2 * c / r, b2 * s / r, a2 * b2 / r**3
 
 
-@pytest.mark.thin(4)
+@pytest.mark.thin(2)
 @pytest.mark.parametrize("thin", [2.0**-10, 2.0**-20, 2.0**-30, 2.0**-40])
 def test_a_flat_pair_that_is_almost_a_needle(thin: float) -> None:
     """The ellipse's radii of curvature, l thin to l/sqrt(thin): each within the rounding of the size, or its own."""

@@ -115,7 +115,7 @@ def distance(curve: Curve, points: np.ndarray) -> np.ndarray:
     return across
 
 
-@pytest.mark.slow
+@pytest.mark.thin(10)
 @pytest.mark.parametrize("tolerance", few(TOLERANCES, 3))
 def test_few_proved_and_smooth(curve: Curve, tolerance: float) -> None:
     arcs = fit_arcs(curve, tolerance)
@@ -158,7 +158,7 @@ def test_never_more_than_biarcs(curve: Curve, monkeypatch: pytest.MonkeyPatch) -
     assert free[-1] < 0.75 * biarcs[-1].count
 
 
-@pytest.mark.thin(9)
+@pytest.mark.thin(3)
 def test_the_count_tends_to_the_theory(curve: Curve) -> None:
     total, special = foreseen(curve)
     assert fit_arcs(curve, 1e-7).count <= 1.005 * total / math.cbrt(1e-7) + 1.7 * max(special, 1)

@@ -146,13 +146,11 @@ class TestArcs:
 
 
 class TestSpline:
-    @pytest.mark.thin(4)
+    @pytest.mark.thin(2)
     @pytest.mark.parametrize(
-        "form", [(closed_spline,), (periodic_spline,), (periodic_spline, 8, 2), (periodic_spline, 11, 5)]
+        "spline", [closed_spline(), periodic_spline(), periodic_spline(8, 2), periodic_spline(11, 5)]
     )
-    def test_beziers_box_and_area_against_scipy(self, form):
-        made, *sizes = form
-        spline = made(*sizes)
+    def test_beziers_box_and_area_against_scipy(self, spline):
         p, m = spline.degree, len(spline.control)
         curve = interpolate.BSpline(spline.knots, spline.control, p)
         starts = spline.knots[p : m + 1]

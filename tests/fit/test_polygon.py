@@ -24,6 +24,7 @@ RECIPES = Path(__file__).parents[2] / "recipes"
 
 
 @pytest.mark.slow
+@pytest.mark.thin(2)
 @pytest.mark.parametrize(("recipe", "tolerance", "most"), [("w-figure-9", 1e-8, 8), ("as-figure-2a", 1e-9, 4)])
 def test_edges_and_rounds_are_few_where_rounding_shows(
     recipe: str, tolerance: float, most: int, monkeypatch: pytest.MonkeyPatch
@@ -102,7 +103,7 @@ def test_inflections_close_to_breaks(name: str, tolerance: float) -> None:
     assert polygon.count <= 1.01 * least_vertices(curve, tolerance) + len(curve.runs[0].breaks) + 1
 
 
-@pytest.mark.thin(4)
+@pytest.mark.thin(2)
 @pytest.mark.parametrize(
     "name",
     [
@@ -124,7 +125,6 @@ def test_a_root_that_has_settled_stays(name: str) -> None:
     np.testing.assert_allclose(frame.turn / frame.turn_slope, 0.0, atol=1e-9)
 
 
-@pytest.mark.thin(2)
 @pytest.mark.parametrize("name", NEAR_A_BREAK)
 def test_inflections_are_where_the_turn_is_zero_or_jumps(name: str) -> None:
     """Round a closed curve they are even in number, and on either side the curve bends as the sides say."""

@@ -28,7 +28,6 @@ def turned(arcs):
     return np.sort(np.degrees(4.0 * np.arctan(arcs.bulges)))[::-1]
 
 
-@pytest.mark.thin(4)
 @pytest.mark.parametrize("tolerance", [1e-2, 1e-6, 1e-11])
 @pytest.mark.parametrize(("cam", "radius", "centre"), DISCS)
 def test_a_disc_is_two_half_circles(cam, radius, centre, tolerance):
@@ -41,7 +40,6 @@ def test_a_disc_is_two_half_circles(cam, radius, centre, tolerance):
     assert float(off.max()) <= 1e-12
 
 
-@pytest.mark.thin(3)
 @pytest.mark.parametrize(
     ("cam", "most", "dwells"),
     [
@@ -68,7 +66,6 @@ def test_more_than_a_half_turn_is_two_arcs():
     assert turned(arcs)[:2] == pytest.approx([143.1301023542] * 2, abs=1e-6)
 
 
-@pytest.mark.thin(2)
 @pytest.mark.parametrize(
     ("ripple", "tolerance"), [("1e-4*sin(2*t)", 1e-3), ("1e-11*sin(2*t)", 1e-3), ("1e-6*sin(3*t)", 5e-7)]
 )

@@ -49,7 +49,6 @@ def distances(curve: Curve, control: np.ndarray, low: float, high: float) -> np.
     return np.sum((points - at.point) * at.normal, axis=1)
 
 
-@pytest.mark.thin(3)
 @pytest.mark.parametrize("name", few(CURVES, 2))
 @settings(max_examples=examples(12), deadline=None)
 @given(
@@ -150,7 +149,7 @@ def rates_of(cubic: Cubics, u: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.n
     return abs(k0), abs(k1) / pace, abs(k2 / v[0] - k1 * v[1] / (2.0 * v[0] ** 2))
 
 
-@pytest.mark.thin(4)
+@pytest.mark.thin(2)
 @pytest.mark.parametrize("seed", range(20))
 def test_no_place_of_a_step_exceeds_its_bound(seed: int) -> None:
     rng = np.random.default_rng(seed)

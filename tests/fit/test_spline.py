@@ -108,7 +108,7 @@ def test_no_span_of_a_right_length_does_better() -> None:
             assert np.abs(gap).max() > 0.98 * worst[0]
 
 
-@pytest.mark.slow
+@pytest.mark.thin(6)
 @pytest.mark.parametrize("name", few(CONTOURS, 4))
 def test_shipped_contours_are_within_a_fifth_of_the_least_count(name: str) -> None:
     contour = designed(load(RECIPES / f"{name}.yaml")).only_surface.contour
@@ -141,7 +141,6 @@ def test_where_sharing_does_not_settle_what_came_nearest_is_halved(tolerance: fl
     assert found.count <= 1.25 * least_spline(contour, tolerance)
 
 
-@pytest.mark.slow
 def test_curves_missed_to_one_side_take_no_more_than_theory_does() -> None:
     for name in ("reuleaux", "reuleaux-nine", "w-ellipse"):
         contour = designed(load(RECIPES / f"{name}.yaml")).only_surface.contour
@@ -186,6 +185,7 @@ def test_the_spline_is_smooth_in_its_own_parameter(name: str) -> None:
 
 
 @pytest.mark.slow
+@pytest.mark.thin(3)
 @pytest.mark.parametrize("name", few(["as-figure-2b", "reuleaux", "shu-wu", "w-booth"], 4))
 @pytest.mark.parametrize("times", [1.0, 2.0, 20.0])
 def test_any_tolerance_above_the_floor_is_held_after_a_few_attempts(
@@ -226,7 +226,6 @@ def test_spans_between_nodes_that_stay_are_not_sought_again(monkeypatch: pytest.
     assert np.array_equal(again.worst[old], first.worst[kept])
 
 
-@pytest.mark.thin(3)
 @pytest.mark.parametrize(
     ("sides", "rounding", "count"), [(99, 1e-12, 99), (5, 1e-14, 5), (3, 1e-12, 3), (99, 1e-9, 99), (3, 1e-6, 6)]
 )

@@ -65,7 +65,7 @@ def test_eccentric_circle_of_two_arcs_in_closed_form(side, length, pivot):
     assert np.cos(arm.shaft_angle(expected) - PHI) == pytest.approx(1.0, abs=1e-12)
 
 
-@pytest.mark.thin(6)
+@pytest.mark.thin(3)
 @pytest.mark.parametrize("side", [TRAILING, LEADING])
 @pytest.mark.parametrize(
     "points",

@@ -143,14 +143,14 @@ def exchanged(contacts: tuple[Contact[Any, Any], ...]) -> tuple[Contact[Any, Any
     return tuple(replace(one, surface=surface) for one, surface in zip(contacts[::-1], surfaces, strict=True))
 
 
-@pytest.mark.thin(14)
+@pytest.mark.thin(7)
 @pytest.mark.parametrize("name", RECIPES)
 def test_the_record_is_what_the_judge_finds(name: str) -> None:
     contacts = held(name)[0]
     assert off(name, contacts) < SEEN
 
 
-@pytest.mark.thin(32)
+@pytest.mark.thin(16)
 @pytest.mark.parametrize("name", RECIPES)
 def test_no_field_of_a_record_is_left_unread(name: str) -> None:
     contacts = held(name)[0]
@@ -166,7 +166,7 @@ def test_no_field_of_a_record_is_left_unread(name: str) -> None:
     assert off(name, exchanged(contacts)) > SEEN
 
 
-@pytest.mark.slow
+@pytest.mark.costly("each arrangement is made, as the tests behind it need it")
 def test_every_arrangement_is_there() -> None:
     """Each pair of guide and touch that a recipe may give, with one contact and with two."""
     there = {(type(one.guide), type(one.touch), len(held(name)[0])) for name in RECIPES for one in held(name)[0]}

@@ -2,13 +2,13 @@
 
 import numpy as np
 import pytest
+import shapely
 from support import followers
 from support.brute_disc import peak
 from support.camfiles import arcs_through
 from support.cases import few
 from support.disc_followers import FOLLOWERS, contour, fitted, on_arm, on_stem
 from support.discs import M02, M07, M15, displaced
-from support.heavy import shapely
 
 from camgeo.curve.backwards import least_hollow
 from camgeo.curve.curvature import least_radius
@@ -130,7 +130,6 @@ def test_tilted_face_contact_is_that_of_the_farthest_corner(tilt, seed):
     assert found == pytest.approx(reached.max(axis=0), abs=1e-12)
 
 
-@pytest.mark.thin(3)
 @pytest.mark.parametrize("seed", SEEDS)
 @pytest.mark.parametrize("side", [TRAILING, LEADING])
 @pytest.mark.parametrize("offset", [10.0, -8.0])
@@ -182,7 +181,7 @@ def test_the_greatest_error_is_proved_over_all_angles(name, seed):
     assert there == pytest.approx(judged.max, rel=1e-6)
 
 
-@pytest.mark.thin(16)
+@pytest.mark.thin(8)
 @pytest.mark.parametrize("distance", [1e-3, -1e-3])
 @pytest.mark.parametrize("name", FOLLOWERS)
 def test_the_limit_holds_on_parallel_contours_and_is_sharp(name, distance):
@@ -207,7 +206,6 @@ def test_dwells_are_told_and_how_flat_they_are(name):
         assert judged.dwell_flatness < 1e-12
 
 
-@pytest.mark.thin(2)
 @pytest.mark.parametrize("radius", [1e3, 1e4, 1e5, 1e6])
 def test_a_shoe_as_flat_as_a_face_is_judged_like_one(radius):
     """A large shoe's contour is still told from the exact one, though its pitch curve is far away."""
@@ -234,7 +232,6 @@ def test_a_face_whose_contact_reaches_the_pivot_is_told():
 # --- drives -----------------------------------------------------------------------------------------------------------
 
 
-@pytest.mark.thin(2)
 @pytest.mark.parametrize("name", few(FOLLOWERS, 8))
 def test_what_drives_a_train_is_the_contact_and_its_derivatives(name):
     follower = FOLLOWERS[name]
@@ -254,14 +251,13 @@ def test_what_drives_a_train_is_the_contact_and_its_derivatives(name):
 # --- at the edge ------------------------------------------------------------------------------------------------------
 
 
-@pytest.mark.thin(2)
 @pytest.mark.parametrize("offset", [43.0, -44.0, 44.9])
 def test_an_eccentricity_near_the_prime_radius_is_proved(offset):
     made = fitted(Parallel(CentreShape(M02, Stem.on(45.0, offset)), 9.0), 1e-5)
     proved(on_stem(M02, 45.0, offset, 9.0), made, 1e-5)
 
 
-@pytest.mark.thin(4)
+@pytest.mark.thin(2)
 @pytest.mark.parametrize("side", [1, -1])
 @pytest.mark.parametrize("prime", [17.0, 15.2])
 def test_an_arm_that_comes_near_to_pointing_at_the_shaft_is_proved(prime, side):
@@ -279,7 +275,7 @@ def test_a_pivot_inside_the_disc_and_an_arm_stretched_out(side):
     proved(on_arm(M07, stretched, 3.0), fitted(Parallel(CentreShape(M07, stretched), 3.0), 1e-5), 1e-5)
 
 
-@pytest.mark.slow
+@pytest.mark.thin(2)
 @pytest.mark.parametrize("gap", [1e-3, 1e-9])
 def test_a_roller_a_hair_above_undercut(gap):
     shape = CentreShape(M15, Stem.on(26.0))
@@ -299,7 +295,7 @@ def proved(follower, made, tolerance):
     assert deviation(made, follower.envelope).worst[0] <= tolerance
 
 
-@pytest.mark.slow
+@pytest.mark.thin(4)
 @pytest.mark.parametrize("width", [1.0, 0.1, 0.01])
 def test_a_rise_of_a_hundredth_of_a_degree_is_measured_as_any_other(width):
     """A wall almost along the line of travel: contact is found everywhere, limit and deviation are still right."""

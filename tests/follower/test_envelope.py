@@ -84,7 +84,7 @@ def test_excess_over_a_flat_face_is_the_greatest_reach_beyond_it(name, spread):
     assert feet.normal == pytest.approx(unit(feet.parameter), abs=1e-15)
 
 
-@pytest.mark.slow
+@pytest.mark.thin(6)
 @pytest.mark.parametrize("name", PITCHES)
 @pytest.mark.parametrize("spread", [1e-3, 2.0])
 def test_excess_over_a_roller_is_its_radius_less_the_distance_to_the_pitch_curve(name, spread):
@@ -109,7 +109,7 @@ def test_pitch_curve_in_polar_form_is_the_papers():
     assert near == pytest.approx(0.0, abs=1e-12)
 
 
-@pytest.mark.thin(4)
+@pytest.mark.thin(2)
 @pytest.mark.parametrize("name", [n for n in LIFTS if n != "undercut"])
 def test_area_and_perimeter_of_a_flat_envelope(name):
     envelope = FlatEnvelope(LiftPitch(LIFTS[name]))
@@ -128,7 +128,7 @@ def test_barbier_and_reuleaux_in_closed_form():
     assert area == pytest.approx(np.pi * (25.0**2 - 4 * 2.0**2), rel=1e-14)  # pi (mean^2 - (k^2 - 1) a^2 / 2)
 
 
-@pytest.mark.slow
+@pytest.mark.thin(2)
 @pytest.mark.parametrize("name", [n for n in PITCHES if n != "undercut"])
 def test_area_and_perimeter_of_a_roller_envelope(name):
     transmission, radius = PITCHES[name]
@@ -160,7 +160,7 @@ def test_support_of_a_pair_is_the_polar_pitch_curve(name):
     assert second == pytest.approx(0.0, abs=1e-7)
 
 
-@pytest.mark.thin(6)
+@pytest.mark.thin(3)
 @pytest.mark.parametrize("name", ["hypocycloid", "rounded Reuleaux", "sharp Reuleaux", "Shu and Wu"])
 @pytest.mark.parametrize("count", [8, 40, 500])
 def test_deviation_of_convex_polygons_is_the_difference_of_support_functions(name, count):

@@ -85,7 +85,7 @@ def test_regular_polygon_where_the_given_angles_miss_the_worst(sides):
     assert np.abs(normals - motion.at_deg).min() < 1e-9
 
 
-@pytest.mark.thin(6)
+@pytest.mark.thin(3)
 @pytest.mark.parametrize("share", [0.1, 0.3, 0.5, 0.7])
 @pytest.mark.parametrize("count", [3, 7, 40])
 @pytest.mark.parametrize("turn", [0.0, -1e-17, 1e-17, 0.4, np.pi / 2])
@@ -228,7 +228,7 @@ PAIRS = {
 }  # fmt: skip
 
 
-@pytest.mark.slow
+@pytest.mark.thin(9)
 @pytest.mark.parametrize("name", PAIRS)
 @pytest.mark.parametrize("count", [9, 100, 2000])
 def test_swings_of_a_pair_on_a_polygon_by_hand(name, count):
@@ -267,7 +267,6 @@ def test_errors_of_a_pair_are_settled_where_the_curvature_jumps(count, out):
     assert error.max() <= judged.motion.max + 1e-11
 
 
-@pytest.mark.slow
 def test_an_ellipse_works_a_right_angled_pair():
     """Semi-axes a, b with a^2 + b^2 = (2 l)^2: its orthoptic circle is the pivot's; r^2 = 2 (l^2 + m^2 cos 2t)."""
     transmission = PAIRS["ellipse"]
@@ -285,7 +284,6 @@ def test_a_contour_that_reaches_the_pivot_is_refused():
         followers.flat_pair(PAIRS["three"]).judge(polygon(130.0 * circle_points(12)), PHI)
 
 
-@pytest.mark.slow
 def test_dwell_of_a_pair():
     pair = followers.flat_pair(PAIRS["given law"])
     contour = through(pair.envelope, 3000)
@@ -383,7 +381,6 @@ def test_swing_and_both_contacts_on_a_circle():
     assert judged.play.least == pytest.approx(second - (pitch - 7.9) - 8.0, abs=1e-12)
 
 
-@pytest.mark.slow
 def test_dwell_of_a_double_roller():
     follower = followers.double_roller(DOUBLES["given law"][0], 8.0)
     motion = follower.judge(through(follower.envelope, 3000), PHI).motion
@@ -414,7 +411,7 @@ def test_limits_hold_and_are_reached_by_the_parallel_contours(name):
     assert 0.95 * play < gap < 1.001 * play
 
 
-@pytest.mark.slow
+@pytest.mark.thin(4)
 @pytest.mark.parametrize("name", PAIRS)
 def test_limits_of_a_pair_hold_and_are_reached(name):
     e = 0.05

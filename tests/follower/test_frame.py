@@ -79,7 +79,7 @@ def laid(mechanism, vertices, rest=WAYS[0]):
 # --- against plain geometry -------------------------------------------------------------------------------------------
 
 
-@pytest.mark.slow
+@pytest.mark.thin(12)
 def test_outputs_by_vertices(pair):
     """In every way of resting, at given shaft angles: the same output as of the turned vertices in a rigid frame."""
     mechanism, bench = pair
@@ -91,6 +91,7 @@ def test_outputs_by_vertices(pair):
 
 
 @pytest.mark.slow
+@pytest.mark.thin(12)
 def test_the_verdict_by_vertices(pair):
     """Greatest error, rms, increment and play: nothing that dense sampling finds is missed, and nothing made up."""
     mechanism, bench = pair
@@ -148,6 +149,7 @@ def test_a_linkage_of_a_micrometre_and_of_a_kilometre(size):
 
 
 @pytest.mark.slow
+@pytest.mark.thin(2)
 @pytest.mark.parametrize("offset", [-0.01, 0.004])
 def test_play_of_a_cam_that_is_smaller_or_larger_all_round(offset):
     vertices, bulges = arcs_through(cam(6000, 25.0 + offset))
@@ -234,7 +236,7 @@ def test_a_corner_held_still_to_the_shafts_least_rate():
 # --- the limit that the tolerance implies -----------------------------------------------------------------------------
 
 
-@pytest.mark.thin(4)
+@pytest.mark.thin(2)
 @pytest.mark.parametrize("tolerance", [1e-6, 1e-3])
 def test_the_limit_is_the_sensitivity_times_the_tolerance(pair, tolerance):
     mechanism, _ = pair
@@ -375,6 +377,7 @@ def wavy_range(a, b):
 
 
 @pytest.mark.slow
+@pytest.mark.thin(4)
 @pytest.mark.parametrize("band", few([0.02, 0.2, 1.0, 3.0], 2))
 @pytest.mark.parametrize("count", [60, 3000])
 def test_the_longest_dwell_wherever_it_starts(band, count):
@@ -409,7 +412,7 @@ def moved_range(by, a, b):
     return wavy_range(a - by, b - by)
 
 
-@pytest.mark.thin(6)
+@pytest.mark.thin(3)
 @pytest.mark.parametrize("count", [1, 2, 3, 5, 8, 60])
 @pytest.mark.parametrize("band", [0.0, 0.3, 0.9, 1.5, 4.0])
 def test_runs_of_blocks_within_a_band_are_those_of_a_count_one_by_one(count, band):

@@ -129,7 +129,7 @@ OTHERS = {
 } | {name: FOLLOWERS[name] for name in ROUND}
 
 
-@pytest.mark.slow
+@pytest.mark.thin(3)
 @pytest.mark.parametrize("name", few(OTHERS, 6))
 def test_splines_and_the_arcs_in_their_place_agree(name: str, monkeypatch: pytest.MonkeyPatch) -> None:
     follower = OTHERS[name]
@@ -153,7 +153,7 @@ def test_splines_and_the_arcs_in_their_place_agree(name: str, monkeypatch: pytes
         assert on_spline.play.most == pytest.approx(on_arcs.play.most, abs=0.02 * size)
 
 
-@pytest.mark.slow
+@pytest.mark.thin(2)
 @pytest.mark.parametrize("corner", [1e-3, -1e-3])
 def test_a_spline_with_a_corner_is_followed_by_arcs_and_proved(corner: float, monkeypatch: pytest.MonkeyPatch) -> None:
     contour = closed(ROLLER, 60, corner)

@@ -88,7 +88,7 @@ GUIDES: dict[str, tuple[Any, float, float]] = {
 }
 
 
-@pytest.mark.slow
+@pytest.mark.thin(8)
 @pytest.mark.parametrize("count", few([60, 140]))
 @pytest.mark.parametrize("name", GUIDES)
 def test_single_rollers_on_polygons_against_bisected_distances(name, count):
@@ -191,7 +191,6 @@ def test_a_limit_below_the_true_error_and_above_the_samples_is_broken(tmp_path, 
     assert {check.name: check for check in verify(path, intent, 24, limits).checks}["motion"].ok
 
 
-@pytest.mark.slow
 def test_few_shaft_angles_give_the_same_error_as_many():
     follower = inch()
     contour = through(follower.envelope, 301)
@@ -210,7 +209,6 @@ def test_a_short_spike_between_the_samples_is_found():
     proved(motion, np.degrees(dense(follower, contour, 60_000)), 1.0)
 
 
-@pytest.mark.thin(2)
 @pytest.mark.parametrize(
     "intended",
     [
@@ -348,6 +346,7 @@ def test_what_is_not_proved_is_looked_at_closely(monkeypatch):
 
 
 @pytest.mark.slow
+@pytest.mark.thin(2)
 @pytest.mark.parametrize("scale", [1.0 - 4e-4, 1.0 + 4e-4])
 def test_a_dent_or_spike_in_a_very_fine_polygon_is_not_lost_between_samples(scale):
     follower = inch()

@@ -53,7 +53,7 @@ def region(path, per_piece=30):
     return shapely.Polygon(drawing.contour.sample(per_piece), holes)
 
 
-@pytest.mark.slow
+@pytest.mark.thin(2)
 @pytest.mark.parametrize(
     ("cam", "part", "top"),
     few(
@@ -118,6 +118,7 @@ def test_a_drawing_says_what_it_is(tmp_path):
 
 
 @pytest.mark.slow
+@pytest.mark.thin(2)
 @pytest.mark.parametrize("cam", few([SUPPORT, ROLLER, PAIR, SHU_WU], 2))
 def test_no_file_passes_for_another(tmp_path, cam):
     """A nominal file in the place of a compensated one, and the reverse, fails; so does half of the kerf."""
@@ -159,7 +160,6 @@ def test_undercut_that_only_the_compensation_makes():
     assert [check["name"] for check in outcome.report["checks"] if not check["ok"]][-1] == "undercut-local"
 
 
-@pytest.mark.thin(2)
 @pytest.mark.parametrize(
     ("files", "cam", "message"),
     [
@@ -228,7 +228,6 @@ def test_a_set_of_bodies_has_a_clearance_of_its_own():
         recipe_of("{stl: {parts: all, clearance: 0.2}}")
 
 
-@pytest.mark.slow
 def test_laws_of_longer_arms():
     for cam in (ROLLER, ARC, PAIR):
         law_of = designed(recipe_of("dxf", cam=cam)).exact.law

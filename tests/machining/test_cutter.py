@@ -46,7 +46,7 @@ def points_of(arcs, per_piece=12):
     return Contour.from_bulges(arcs.points, arcs.bulges).sample(per_piece)
 
 
-@pytest.mark.slow
+@pytest.mark.thin(2)
 @pytest.mark.parametrize("body", [DWELLS, SHU_WU, REULEAUX, ROLLER])
 def test_a_shape_run_backwards_is_the_same_shape(body):
     _, design = design_of(body)
@@ -153,7 +153,6 @@ def test_a_hollow_is_reached_by_a_cutter_just_small_enough():
     assert len(cutter_path(design.only_surface.contour, hollow + 1e-3).lost) == 4
 
 
-@pytest.mark.slow
 def test_no_hollow_and_none_trimmed():
     _, design = design_of(SHU_WU)
     assert least_hollow(design.only_surface.contour)[0] == np.inf

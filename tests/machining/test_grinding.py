@@ -53,7 +53,6 @@ def rows_of(table):
     return np.array([[float(cell) for cell in line.split(",")] for line in lines])
 
 
-@pytest.mark.slow
 def test_table_of_the_worked_lobe(tmp_path) -> None:
     _, table, report = made(tmp_path, FLAT % (0.002, GRINDING % ", step: 1"))
     lines = table.read_text().splitlines()
@@ -111,7 +110,6 @@ def test_bound_of_the_third_derivative_is_sharp_for_small_shares() -> None:
         assert np.abs(third[9:-9]).max() >= least * float(bend(np.array(share), np.array(share)))
 
 
-@pytest.mark.slow
 @pytest.mark.parametrize("rotation", ["cw", pytest.param("ccw", marks=pytest.mark.slow)])
 def test_wheel_simulated_by_hand(rotation, tmp_path) -> None:
     """The metal's own places stand one wheel's radius from the joined rows, within what the head of the table says."""

@@ -81,7 +81,7 @@ def test_cam_of_four_arcs() -> None:
     assert [off_centre.area, off_centre.x, off_centre.y, off_centre.polar] == pytest.approx(expected, rel=1e-14)
 
 
-@pytest.mark.slow
+@pytest.mark.thin(4)
 @pytest.mark.parametrize(
     "text",
     [
@@ -108,7 +108,6 @@ def test_mesh_of_the_file_weighs_the_same(text, tmp_path, capsys) -> None:
     assert report["error"] < 1e-11
 
 
-@pytest.mark.slow
 def test_set_screw_is_said_to_be_left_out() -> None:
     hub = ", bore: 16, hub: {diameter: 30, height: 8}"
     whole, holed = balance(ROLLER % hub), balance(ROLLER % f"{hub}, set_screw: {{diameter: 4}}")

@@ -106,7 +106,6 @@ def test_d17_speed_of_the_roller() -> None:
 
 
 # needs: dynamics
-@pytest.mark.slow
 def test_d20_angle_at_which_a_guide_jams() -> None:
     train = TRAIN
     made = checks(disc("kind: roller, radius: 9", more=train + "\nlimits: {jam-margin: {at_least: 40}}\n"))
@@ -124,7 +123,6 @@ def test_d20_angle_at_which_a_guide_jams() -> None:
 D01 = "[{rise: 20, over: 120, law: cycloidal}, {dwell: 60}, {return: 20, over: 120, law: polynomial-345}, {dwell: 60}]"
 
 
-@pytest.mark.thin(2)
 @pytest.mark.parametrize(
     ("text", "area"),
     [
@@ -302,7 +300,7 @@ def test_a_failure_names_its_key() -> None:
 
 
 # needs: dynamics
-@pytest.mark.thin(3)
+@pytest.mark.thin(2)
 @pytest.mark.parametrize("rpm", [900.0, 37.5])
 def test_peaks_at_a_speed(rpm: float) -> None:
     names = [f"peak-{name}-at-speed" for name in ("velocity", "acceleration", "jerk")]
@@ -392,7 +390,6 @@ def test_the_size_that_would_do_does(text: str, rising: float, falling: float) -
     assert max(up - rising, down - falling) > -0.1  # and no larger than it must be
 
 
-@pytest.mark.slow
 def test_a_return_that_a_spring_drives_may_be_steeper() -> None:
     back = "[{rise: 20, over: 150, law: cycloidal}, {dwell: 60}, {return: 20, over: 60, law: cycloidal}, {dwell: 90}]"
     text = disc("kind: roller, radius: 9", back)

@@ -77,7 +77,7 @@ def passes(recipe: Any) -> bool:
     return all(check.ok for check in camgeo.check(recipe).checks if check.file is None)
 
 
-@pytest.mark.slow
+@pytest.mark.thin(3)
 @pytest.mark.parametrize("name", few(CASES, 3))
 def test_the_angle_found_holds_and_a_hundredth_less_does_not(name: str) -> None:
     recipe = camgeo.load(CASES[name])
@@ -100,7 +100,6 @@ def test_the_angle_of_a_harmonic_return_is_that_of_its_formula() -> None:
     assert angle + dwell == pytest.approx(120, abs=1e-9)
 
 
-@pytest.mark.slow
 def test_the_recipe_with_the_numbers_in_makes_the_same_file() -> None:
     recipe = camgeo.load(STEM)
     sized: Any = camgeo.design(recipe).sized

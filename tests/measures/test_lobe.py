@@ -47,7 +47,6 @@ def test_lobe_on_its_ramp() -> None:
     assert {k for joint in motion.joints for k, *_ in joint.jumps} == {3}  # where the ramp begins and is steady
 
 
-@pytest.mark.thin(3)
 @pytest.mark.parametrize("nose", [0.0, 30.0, 83.5, 90.0, 180.0, 340.0, 360.0])
 def test_nose_stands_where_it_is_asked_for(nose: float) -> None:
     motion, turned = (lobe(8.25, 66 * DEGREE, POWERS, ramp=RAMP, nose=angle * DEGREE) for angle in (0.0, nose))
@@ -56,7 +55,6 @@ def test_nose_stands_where_it_is_asked_for(nose: float) -> None:
     assert moved == pytest.approx(motion.derivatives(t, 2), abs=1e-10)
 
 
-@pytest.mark.thin(2)
 @pytest.mark.parametrize(
     ("begin", "return_law", "end", "opens"),
     [
@@ -100,7 +98,6 @@ def test_lobe_centre_is_no_peak() -> None:
     assert made["duration"].value == pytest.approx(2.0 * 150.0 * (1.0 - share), abs=1e-8)
 
 
-@pytest.mark.slow
 def test_one_figure_at_two_lifts() -> None:
     """Each entry of a list is a limit of its own, at its own lift, and a remedy names the one that fails."""
     lifts = "duration: [{at_lift: 1.27, at_least: 190}, {at_lift: 1.52, at_least: 194, at_most: 200}, {at_most: 300}]"
@@ -165,7 +162,6 @@ def test_nose_of_a_half_turn_is_in_its_middle() -> None:
         designed(load_text(f"{text}powers: [2, 6, 8, 10, 12]}}}}}}\n", "r"))
 
 
-@pytest.mark.slow
 def test_round_tappet() -> None:
     text = LOBE % (", diameter: %s, axial_offset: -2", "")
     recipe = load_text(text % 30, "r")
@@ -199,7 +195,6 @@ def test_a_table_of_crank_degrees_that_is_read_as_one_of_the_cam_says_what_to_gi
     designed(load_text(text % ", angle: crank, reading: 0.01", str(tmp_path / "lobe.yaml")))
 
 
-@pytest.mark.slow
 def test_table_in_thousandths(tmp_path) -> None:
     motion = lobe(8.0, 68 * DEGREE, POWERS)
     rows = [(k, at(motion, float(k % 360))) for k in range(360)]

@@ -68,7 +68,6 @@ def names(text: str) -> list[str]:
     return [remark.name for remark in remarks(text)]
 
 
-@pytest.mark.slow
 def test_a_large_second_roller_of_a_sized_pair_is_told_the_radius_that_keeps_the_rule() -> None:
     (remark,) = (remark for remark in remarks(SIZED_PAIR % 1.1) if remark.name == "large-roller")
     keeping = re.search(r"which a conjugate\.radius below (\S+) in keeps$", remark.sentence)
@@ -82,7 +81,7 @@ def test_a_sound_recipe_has_none(text: str) -> None:
     assert names(text) == []
 
 
-@pytest.mark.thin(14)
+@pytest.mark.thin(3)
 @pytest.mark.parametrize(
     ("text", "found"),
     [
@@ -166,7 +165,6 @@ def test_a_files_dwell_that_is_shorter_than_the_intended_one_is_remarked() -> No
             assert remark["sentence"].startswith("a.dxf: the output dwells for 82.489 deg of the 93.223 intended")
 
 
-@pytest.mark.slow
 def test_remarks_are_shown_everywhere_and_fail_nothing(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     path = tmp_path / "roller.yaml"
     path.write_text(ROLLER + "part: {thickness: 200}\nverify: {angles: 120}\nexport: {files: [dxf, html]}\n")

@@ -26,6 +26,7 @@ def remark(text: str) -> str:
 
 
 @pytest.mark.slow
+@pytest.mark.thin(3)
 @pytest.mark.parametrize(
     "text",
     [
@@ -53,7 +54,6 @@ def test_a_size_that_undercuts_is_called_that(text: str) -> None:
     assert "pitch-radius" in {check.name for check in designed(load_text(other, "cam.yaml")).checks if not check.ok}
 
 
-@pytest.mark.slow
 def test_a_ring_that_needs_more_metal_says_how_much() -> None:
     text = recipe(60.0, "radius: 5", 20, 60, ring=True, more="part: {outer: OUTER}\n")
     size = re.search(r"which a base radius of (\S+) keeps$", remark(text.replace("OUTER", "600")))

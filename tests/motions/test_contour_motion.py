@@ -61,7 +61,6 @@ def test_a_drawing_becomes_the_motion_that_it_was_made_of(follower, more, files,
     assert made.kept.remarks == ()
 
 
-@pytest.mark.slow
 def test_another_follower_on_the_same_contour_moves_otherwise(tmp_path):
     exported(tmp_path, "roller")
     given = "{contour: out/cam/cam.dxf, reading: 0.003}"
@@ -75,7 +74,6 @@ def test_a_drawing_in_another_unit(tmp_path):
     assert moved(made)[0] == pytest.approx(moved(intended)[0], abs=0.006)
 
 
-@pytest.mark.slow
 def test_the_report_of_a_contour_has_its_distance_and_no_line(tmp_path):
     exported(tmp_path, "roller")
     report = pipeline.check(recipe("{contour: out/cam/cam.dxf, reading: 0.003}", tmp_path, "roller")).report
@@ -124,7 +122,7 @@ def test_points_round_a_contour_become_the_motion_that_they_were_made_of(followe
     assert made.kept.distance <= 0.02 * size
 
 
-@pytest.mark.slow
+@pytest.mark.thin(3)
 @pytest.mark.parametrize("follower", ["roller", "offset", "arm"])
 def test_points_of_a_pitch_curve_give_the_motion_of_the_centre_that_runs_on_it(follower, tmp_path):
     """The contour of a knife edge is the pitch curve of a roller whose cam is smaller all round by its radius."""
@@ -150,7 +148,7 @@ def test_points_in_a_file_without_a_unit_are_in_that_beside_it(tmp_path):
     assert moved(made)[0] == pytest.approx(moved(intended)[0], abs=0.04)
 
 
-@pytest.mark.thin(20)
+@pytest.mark.thin(5)
 @pytest.mark.parametrize(
     ("motion", "message"),
     [
@@ -211,7 +209,6 @@ def test_a_gap_is_refused_with_the_key_that_closes_it_and_a_contour_is_placed(tm
     assert np.ptp(moved(made)[0]) == pytest.approx(6.0, abs=0.012)
 
 
-@pytest.mark.slow
 def test_points_that_leave_a_stretch_out_are_closed_across_and_that_is_told(tmp_path):
     intended = contacts(tmp_path, "roller")
     heading, *rows = (tmp_path / "old.csv").read_text().splitlines()

@@ -92,7 +92,6 @@ def rows_of(unit=1.0, step=1.0, count=41, mark=","):
     return "".join(f"{k * step / unit:.7f}{mark}{ramp(k * step):.6f}\n" for k in range(count))
 
 
-@pytest.mark.thin(3)
 @pytest.mark.parametrize(
     ("heading", "unit", "keys", "units"),
     [

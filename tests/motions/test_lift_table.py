@@ -21,7 +21,6 @@ from kin.law.sources.laws import named
 from kin.law.sources.programme import Dwell, Move, programme
 
 
-@pytest.mark.thin(3)
 @pytest.mark.parametrize(
     ("form", "head"),
     [
@@ -91,7 +90,6 @@ def test_columns_and_rows_that_are_none_are_refused(given, message, tmp_path):
     assert message in str(fault(given, tmp_path))
 
 
-@pytest.mark.slow
 def test_rows_may_stand_in_the_recipe(tmp_path):
     rows = ", ".join(f"[{angle:g}, {value:.3f}]" for angle, value in zip(HALF, sampled(HALF), strict=True))
     written(tmp_path, HALF, sampled(HALF))
@@ -316,7 +314,6 @@ def test_a_displacement_without_end_is_refused_with_its_line(cell, tmp_path):
     assert "lift.csv, line 31: the displacement is not finite" in str(error)
 
 
-@pytest.mark.slow
 def test_a_table_of_more_rows_than_any_motion_needs(tmp_path, monkeypatch):
     monkeypatch.setattr("camgeo.motions.lift_table.MAX_ROWS", 400)
     recipe = tmp_path / "cam.yaml"

@@ -71,14 +71,14 @@ def test_segments_are_those_of_the_motion():
     assert "harmonic leaves" in second
 
 
-@pytest.mark.slow
+@pytest.mark.costly("all laws are tried on each stroke")
 def test_a_turn_that_begins_in_a_stroke_has_none():
     told = motion(45.0)
     known = Recognised(told, recognised(told, 0.01, "mm"), 0.02, 1.0, "mm")
     assert known.segments() == (None, STROKES_BEGIN)
 
 
-@pytest.mark.slow
+@pytest.mark.costly("all laws are tried on each stroke")
 def test_laws_that_leave_more_than_may_be_are_none():
     told = motion(0.0)
     told.position += 0.1 * np.sin(9.0 * told.shaft)

@@ -34,7 +34,7 @@ def small(place, low, high):
     return ring(centre + 2.0 * unit(T), centre + 0.5 * unit(T), low, high)
 
 
-@pytest.mark.thin(16)
+@pytest.mark.thin(8)
 @pytest.mark.parametrize("write", [binary, text, in_3mf])
 @pytest.mark.parametrize("heights", [(), (4.0,)])
 @pytest.mark.parametrize("name", PLACES)
@@ -84,7 +84,6 @@ def test_two_solids_in_a_step_file(tmp_path):
         read_solid(path)
 
 
-@pytest.mark.thin(2)
 @pytest.mark.parametrize("kind", ["dxf", "svg"])
 @pytest.mark.parametrize(("x", "word"), [(40.0, "does not lie inside the largest one"), (0.0, "lies inside a hole")])
 def test_an_outline_that_does_not_belong(tmp_path, kind, x, word):

@@ -52,7 +52,6 @@ print(fonts.make_font("any.ttf", 2.5).text_width("cam") > 1.0, "fontTools" in sy
 """
 
 
-@pytest.mark.slow
 def test_fonts_are_loaded_when_they_are_asked_for() -> None:
     """And nothing is left of what waits for them."""
     run = subprocess.run([sys.executable, "-c", FONTS], capture_output=True, text=True, check=True)

@@ -62,7 +62,6 @@ STL = {
 }
 
 
-@pytest.mark.thin(3)
 @pytest.mark.parametrize("fault", DXF)
 def test_dxf(fault: str, folder: Path, tmp_path: Path) -> None:
     text = (folder / "plain.dxf").read_text("utf-8")

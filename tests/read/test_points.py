@@ -54,7 +54,6 @@ def read(tmp_path, text, name="points.csv"):
     return read_points(path)
 
 
-@pytest.mark.thin(4)
 @pytest.mark.parametrize("kind", list(FILES))
 def test_points_are_read_however_they_are_written(kind, tmp_path):
     table = read(tmp_path, FILES[kind])

@@ -55,7 +55,6 @@ def test_what_packs_to_next_to_nothing(tmp_path):
         read_solid(path)
 
 
-@pytest.mark.slow
 def test_an_object_is_put_together_once(tmp_path, monkeypatch):
     path = in_3mf(tmp_path / "part.3mf", ring())
     import zipfile
@@ -189,7 +188,6 @@ def test_items_and_components_that_repeat_a_mesh(tmp_path, monkeypatch):
                 threemf.read_placed(path)
 
 
-@pytest.mark.thin(3)
 @pytest.mark.parametrize(
     ("name", "text"),
     [
@@ -233,7 +231,6 @@ def never(*_given, **_more):
     raise AssertionError("parsed before it was counted")
 
 
-@pytest.mark.thin(3)
 @pytest.mark.parametrize(
     "pieces", ["L1.5 2.5", " 1.5,2.5", " l 1 2", "H1", "C1 2 3 4 5 6", "C1 2 3 4 5 6 1 2 3 4 5 6", "A1 1 0 0 1 2 3"]
 )

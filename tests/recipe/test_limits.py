@@ -203,7 +203,7 @@ def test_limits_hold_and_fail_at_the_figure_itself(text: str, sign: float, sense
         assert not report_of(text, said)["ok"] if not ok else report_of(text, said)["ok"] or not alone
 
 
-@pytest.mark.thin(32)
+@pytest.mark.thin(8)
 @pytest.mark.parametrize("text", sorted(set(HAVE.values())))
 def test_limits_are_foreseen(text: str) -> None:
     recipe = loaded(text, wide(text))
@@ -423,7 +423,6 @@ def test_bounds_that_contradict_each_other() -> None:
 # --- failures in words ------------------------------------------------------------------------------------------------
 
 
-@pytest.mark.slow
 def test_the_exit_status_and_the_text(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     path = tmp_path / "roller.yaml"
     path.write_text(ROLLER + "limits: {pressure-angle: {at_most: 45}}\n")
@@ -824,7 +823,6 @@ def test_what_is_said_of_a_missed_limit() -> None:
         assert told.startswith(words) if words.endswith(" ") else told == words, (name, value, bound)
 
 
-@pytest.mark.slow
 def test_a_lobe_s_limit_says_its_lift_where_it_holds() -> None:
     (found,) = held(VALVE, "{duration: {at_least: 100}}")
     assert (found["ok"], found["detail"]) == (True, "at a lift of 1.27 mm")
@@ -851,7 +849,6 @@ def test_the_schema_knows_every_limit() -> None:
     assert json.loads(json.dumps(schema)) == schema
 
 
-@pytest.mark.thin(4)
 @pytest.mark.parametrize("kind", OF_CAMS)
 def test_each_starter_tells_of_limits(kind: str) -> None:
     assert re.search(r"^(# )?limits: .*# figures that must keep within bounds", starter(kind), re.MULTILINE)
@@ -890,7 +887,6 @@ def test_a_sweep_limits_and_ranks_by_the_pressure_angle() -> None:
 
 
 # needs: sweep
-@pytest.mark.slow
 def test_a_sweep_has_the_figures_of_its_limits() -> None:
     recipe = loaded(ROLLER + SWEEP)
     own = {name: value_of(name)[0] for name in figure_names(recipe) if HAVE.get(name) == ROLLER}
@@ -944,7 +940,6 @@ def test_any_cam_s_figures_are_those_of_its_motion(cos: list[int], sin: list[int
         ]
 
 
-@pytest.mark.slow
 def test_the_backlash_of_a_groove_without_a_flank(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     """It could not be judged; nothing is said of flat faces."""
     recipe = tmp_path / "groove.yaml"

@@ -494,7 +494,7 @@ FIGURES = {
 }
 
 
-@pytest.mark.thin(12)
+@pytest.mark.thin(6)
 @pytest.mark.parametrize("path", SHIPPED, ids=lambda path: path.stem)
 def test_a_shipped_recipe_is_a_cam_with_metal_around_its_bore(path: Path) -> None:
     recipe = load(path)
@@ -553,7 +553,7 @@ PRINTED = {
 }
 
 
-@pytest.mark.thin(6)
+@pytest.mark.thin(3)
 @pytest.mark.parametrize("kind", OF_CAMS)
 def test_a_starter_is_a_cam_as_it_stands(kind: str) -> None:
     recipe = text(starter(kind))
@@ -660,7 +660,7 @@ def plain_yaml(text: str | bytes) -> dict:
     return yaml.load(text, Loader=Plain)  # a safe loader
 
 
-@pytest.mark.thin(24)
+@pytest.mark.thin(12)
 @pytest.mark.parametrize("path", SHIPPED, ids=lambda path: path.stem)
 def test_the_json_schema_admits_what_is_shipped(path: Path) -> None:
     plain = plain_yaml(path.read_bytes())
@@ -669,7 +669,7 @@ def test_the_json_schema_admits_what_is_shipped(path: Path) -> None:
     assert not valid({key: value for key, value in plain.items() if key != "cam"}, json_schema(recipe_table()))
 
 
-@pytest.mark.thin(6)
+@pytest.mark.thin(3)
 @pytest.mark.parametrize("kind", OF_CAMS)
 def test_the_json_schema_admits_the_starters(kind: str) -> None:
     assert valid(plain_yaml(starter(kind)), json_schema(recipe_table()))

@@ -162,7 +162,6 @@ def fault(text: str) -> str:
     return str(error)
 
 
-@pytest.mark.slow
 def test_a_face_on_an_arm_that_no_size_rounds_is_told_which_face_does() -> None:
     text = FACE.replace("least: 10", "least: 114").replace("face: 5", "face: 5.5")
     told = re.search(r"a face below (\S+) mm does", fault(text))
@@ -248,7 +247,6 @@ def test_the_remark_says_what_bounds_the_size() -> None:
     )
 
 
-@pytest.mark.slow
 def test_an_offset_that_only_rounding_left_is_0() -> None:
     """A rise and a return alike are best on a stem without an offset."""
     law = "over: 60, law: cycloidal"
@@ -282,7 +280,7 @@ def test_the_recipe_with_the_numbers_in_is_the_same_cam(text: str, units: str) -
     assert camgeo.design(given).sized is given
 
 
-@pytest.mark.slow
+@pytest.mark.thin(2)
 @pytest.mark.parametrize("text", [BOUND.replace("radius: 8, offset: 0", "radius: 30"), RING])
 def test_undercut_of_a_sized_cam_says_which_key_of_sizing_frees_it(text: str) -> None:
     told = failure(text)

@@ -79,7 +79,7 @@ def test_without_a_format_all_others_are_made(name: str, tmp_path: Path) -> None
     assert {file.kind for file in report.files} == set(others)
 
 
-@pytest.mark.thin(4)
+@pytest.mark.thin(2)
 @pytest.mark.parametrize("name", ["motion", "polar", "inspection", "grinding"])
 def test_without_a_table_its_word_is_unknown(name: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     kept = tuple(other for other in csv.MODULES if other != name)

@@ -60,7 +60,7 @@ def test_a_file_has_answers_just_if_it_bears_the_name_of_a_question():
     assert {path for path in paths if answers(path)} == {path for path in paths if path.stem in names}
 
 
-@pytest.mark.thin(4)
+@pytest.mark.thin(2)
 @pytest.mark.parametrize("name", slots())
 def test_all_answers_are_of_the_class_that_is_asked_for(name):
     slot = slots()[name]

@@ -88,7 +88,6 @@ def test_details_of_an_inch_recipe_are_in_inches(name: str) -> None:
             assert max(abs(float(number)) for number in found.groups()) < 0.2  # about the shaft, 3 and 2 mm off at most
 
 
-@pytest.mark.slow
 def test_a_place_is_in_inches_too() -> None:
     text = RECIPES["yoke"].replace("bore: 10", "bore: 10, bolts: {count: 3, circle: 30, hole: 4}")
     for words, scale in ((text, 1.0), (in_inches(text), INCH)):

@@ -94,7 +94,6 @@ def test_the_report_of_a_train_under_a_spring() -> None:
     assert (checks[0]["limit"], checks[0]["unit"], checks[0]["sense"]) == (0.0, "N", "at_least")
 
 
-@pytest.mark.slow
 def test_the_speed_at_which_a_rigid_follower_floats_lies_between_any_places() -> None:
     """Norton's modified sine by mpmath, (F + k s)/(m s'') over 110 degrees to 20 digits."""
     disc = """\
@@ -142,7 +141,6 @@ def test_beyond_the_speed_at_which_float_begins_the_check_fails() -> None:
     assert run["impacts"]["free_deg"] > 0.0
 
 
-@pytest.mark.slow
 def test_play_makes_impacts() -> None:
     outcome = pipeline.check(recipe(FOLLOWED.replace("preload: 150", "backlash: 0.02")))
     assert outcome.ok
@@ -194,7 +192,7 @@ def test_in_flight_nothing_is_said_of_how_fast_a_free_motion_dies_away() -> None
     assert "turns_to_one_percent" not in flies["transient"]
 
 
-@pytest.mark.slow
+@pytest.mark.thin(2)
 @pytest.mark.parametrize(("play", "faces"), [("0.02", ["lower", "upper"]), ("50", [])])
 def test_which_faces_bear(play: str, faces: list[str]) -> None:
     report = pipeline.check(recipe(FOLLOWED.replace("preload: 150", f"backlash: {play}"))).report
@@ -292,7 +290,6 @@ def test_swings_without_number_are_refused_with_the_damping_that_helps() -> None
     assert all(run["steady"]["least_force"] is not None for run in runs)
 
 
-@pytest.mark.slow
 def test_a_linkage_is_driven_as_intended() -> None:
     four_bar = """\
 name: linkage
@@ -309,7 +306,7 @@ verify: {angles: 120}
         recipe(train.replace("preload: 8", "backlash: 0.1"), four_bar)
 
 
-@pytest.mark.slow
+@pytest.mark.thin(3)
 @pytest.mark.parametrize("train", [TRAIN, TRAIN.replace("preload: 150", "backlash: 0.02"), ""])
 def test_the_checks_are_foreseen(train: str) -> None:
     asked = recipe(train)
@@ -361,7 +358,7 @@ HIGH = "rounding does not tell it from a whole multiple"
 LOW = "nothing holds the follower to the cam"
 
 
-@pytest.mark.slow
+@pytest.mark.thin(6)
 @pytest.mark.parametrize(
     ("train", "message", "change"),
     [

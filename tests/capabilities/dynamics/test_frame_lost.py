@@ -23,7 +23,6 @@ dynamics: {mass: 0.02, rpm: 120, load: 12, coupler: {mass: 0.8, inertia: 6e-4}}
 """
 
 
-@pytest.mark.slow
 def test_faces_are_lost_from_their_speeds_on() -> None:
     """A hundredth below it the face bears all round, a hundredth above it does not, at the place that is told."""
     recipe = read(FRAME.encode(), Path("c.yaml"))

@@ -48,7 +48,6 @@ def test_the_corners_of_a_load_are_found() -> None:
     assert "sampled" not in check.detail
 
 
-@pytest.mark.thin(2)
 @pytest.mark.parametrize("count", few([22, 25, 37, 80], 2))
 def test_the_mean_force_on_a_roller_under_a_load_with_corners(count: int) -> None:
     """Against Gauss's rule between all corners and joints, with the lever and the roller's turns of the same state."""
@@ -67,7 +66,6 @@ def test_the_mean_force_on_a_roller_under_a_load_with_corners(count: int) -> Non
     assert own[0] == pytest.approx(mean, rel=1e-10)
 
 
-@pytest.mark.thin(2)
 @pytest.mark.parametrize("width", [1e-3, 1e-6])
 def test_no_narrow_feature_is_passed_over(width: float) -> None:
     found = extremes_of(running(f"30*exp(-((t - 1.2345)/{width})**2)"))
@@ -93,7 +91,7 @@ SAMPLED = [
 ]
 
 
-@pytest.mark.thin(4)
+@pytest.mark.thin(2)
 @pytest.mark.parametrize(("load", "least", "most"), few(SAMPLED, 3))
 def test_what_is_sampled_says_so_and_is_counted_on_the_safe_side(load: str, least: float | None, most: float) -> None:
     found = running(load, "mass: 1e-9, rpm: 60, preload: 50")
@@ -118,7 +116,6 @@ def test_what_is_sampled_says_so_and_is_counted_on_the_safe_side(load: str, leas
     assert "load is sampled" in forces({"forces": section, "units": "mm"})
 
 
-@pytest.mark.slow
 def test_the_preload_for_a_least_force_counts_what_is_sampled() -> None:
     found = running("30*cbrt(sin(t - 1))", "mass: 1e-9, rpm: 60, least_force: 5")
     assert found.sampled is not None
@@ -132,7 +129,6 @@ def test_a_smooth_load_is_not_cut(load: str) -> None:
     assert made.sampled is None
 
 
-@pytest.mark.thin(2)
 @pytest.mark.parametrize("load", ["1/(t - 1)", "abs(t - 1)**-0.5", "log(abs(t - 1))", "min(1/(t - 1), 3)"])
 def test_a_load_without_a_bound_is_refused(load: str) -> None:
     with pytest.raises(LoadError) as caught:

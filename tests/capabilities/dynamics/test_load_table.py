@@ -59,7 +59,6 @@ def test_a_load_is_straight_between_its_rows_and_on_to_the_next_turn(tmp_path: P
     assert load(at) == pytest.approx([0.0, 50.0, 100.0, 175.0, 125.0, -20.0, -20.0, -40.0 / 90.0, 50.0], abs=1e-10)
 
 
-@pytest.mark.thin(2)
 @pytest.mark.parametrize(
     ("rows", "more"),
     [
@@ -76,7 +75,6 @@ def test_the_same_load_in_other_words(rows: str, more: str, tmp_path: Path) -> N
     assert given_ == pytest.approx(running(recipe(tmp_path)).load(phi), abs=1e-9)
 
 
-@pytest.mark.slow
 def test_a_table_and_the_formula_of_the_same_load(tmp_path: Path) -> None:
     """Two straight lines: every extreme of the forces is that of abs(t - pi), whose corners the search has to find."""
     table = recipe(tmp_path, f"0, {100 * math.pi!r}\n180, 0\n")
@@ -88,7 +86,6 @@ def test_a_table_and_the_formula_of_the_same_load(tmp_path: Path) -> None:
     assert running(table).mean_force(0) == pytest.approx(running(formula).mean_force(0), rel=1e-9)
 
 
-@pytest.mark.slow
 def test_no_row_is_passed_over(tmp_path: Path) -> None:
     """A measured load of 3600 rows, one of them far above its neighbours, of a train that has no mass to speak of."""
     values = 50.0 + np.random.default_rng(7).normal(0.0, 5.0, 3600)
@@ -218,7 +215,7 @@ dynamics: {mass: 0.01, rpm: 60, preload: 80, load: {table: load.csv}}
         read(text.encode(), tmp_path / "case.yaml")
 
 
-@pytest.mark.thin(4)
+@pytest.mark.thin(2)
 @pytest.mark.parametrize(
     ("rows", "more", "factor"),
     [

@@ -62,7 +62,6 @@ def named(document: dict[str, Any], name: str) -> dict[str, Any]:
     return found
 
 
-@pytest.mark.slow
 def test_checks_have_pounds_beside_si() -> None:
     inches, mm = report(INCHES), report(metric(INCHES))
     for name, per, unit in (
@@ -100,7 +99,6 @@ def test_text_and_page() -> None:
         assert "lbf" not in text
 
 
-@pytest.mark.slow
 def test_the_page_of_an_elastic_train() -> None:
     elastic = INCHES.replace("load: 5 lbf, material: steel", "stiffness: 4000 lbf/in, damping: 60").partition("limits")[
         0

@@ -62,7 +62,6 @@ def test_pressure_by_hertz_of_two_materials() -> None:
     )
 
 
-@pytest.mark.slow
 def test_a_limit_is_told_and_not_judged() -> None:
     """The weaker of both; far above it nothing fails but where the recipe limits the figure."""
     plain = report(f"{OWN}}}")["forces"]["pressure"][0]
@@ -172,7 +171,7 @@ def pressure_of(text: str) -> tuple[float, dict[str, Any]]:
     return max(one["max"] for one in found["pressure"]), found["width"]
 
 
-@pytest.mark.slow
+@pytest.mark.thin(10)
 @pytest.mark.parametrize(
     ("part", "width", "track", "value", "bound"),
     [
@@ -196,7 +195,6 @@ def test_the_width_is_the_least_of_the_metal(part: str, width: str, track: str, 
     assert over == pytest.approx(pressure_of(wide)[0] / math.sqrt(value), rel=1e-9)
 
 
-@pytest.mark.slow
 def test_the_land_of_the_case() -> None:
     report = check(read(disc("thickness: 10, bore: 20, chamfer: 2").encode(), Path("case.yaml"))).report
     (limit,) = (one for one in report["checks"] if one["name"] == "limit:contact-pressure")
@@ -258,7 +256,6 @@ def test_a_lobe_is_as_wide_as_on_its_shaft(tmp_path: Path) -> None:
     assert list(values.values()) == pytest.approx([644.4371 * math.sqrt(10.0 / long) for long in (5.0, 20.0)], rel=1e-5)
 
 
-@pytest.mark.thin(3)
 @pytest.mark.parametrize(
     ("stated", "mega"),
     [
@@ -284,7 +281,6 @@ def test_pressures_carry_their_units(stated: str, mega: float) -> None:
         read(text.replace(f"at_most: {stated}", "at_most: 3 lbf").encode(), Path("cam.yaml"))
 
 
-@pytest.mark.thin(3)
 @pytest.mark.parametrize(
     ("load", "preload", "rate", "rpm"),
     [

@@ -89,7 +89,6 @@ def reference(ratio: Any) -> tuple[Any, Any]:
     return lambda t: mp.diff(energy, t) / mp.diff(lift, t), mp.findroot(travel, 0.3)
 
 
-@pytest.mark.thin(2)
 @pytest.mark.parametrize(("written", "rows"), [(CONSTANT, None), (TABLE, ROWS)])
 def test_the_force_at_the_tappet_is_that_of_the_energy(written: str, rows: Any) -> None:
     ratio = (lambda _: mp.mpf("1.6")) if rows is None else natural_spline(rows)
@@ -132,7 +131,6 @@ def min_max(force: Any, opens: Any) -> tuple[Any, Any]:
     return min(found), max(found)
 
 
-@pytest.mark.slow
 def test_an_engine_builders_spring_is_told_at_its_valve() -> None:
     """130 lbf on the seat, 420 lbf/in: at 1.6 times 0.321 in that is 345.7 lbf, and solid by 0.0636 in."""
     recipe = """\
@@ -159,7 +157,6 @@ limits: {coil-bind: {at_least: 0.06}, spring-open-load: {at_most: 300 lbf}, spri
         camgeo.load(recipe.replace("on: CARRIER, ", ""))
 
 
-@pytest.mark.slow
 def test_without_lash_the_valve_is_open_from_dwell_to_dwell_and_its_mass_alone_may_count() -> None:
     motion = "[{dwell: 60}, {rise: 8, over: 90, law: cycloidal}, {dwell: 20}, {return: 8, over: 190, law: cycloidal}]"
     recipe = text("1.5", lash="0").replace("{formula: 4*(1 - cos(t))}", motion)
@@ -180,7 +177,6 @@ def test_without_lash_the_valve_is_open_from_dwell_to_dwell_and_its_mass_alone_m
     assert "seat" not in check.detail
 
 
-@pytest.mark.slow
 def test_each_opening_of_a_turn_is_judged() -> None:
     recipe = text(CONSTANT).replace("4*(1 - cos(t))", "4*(1 - cos(2*t))")
     report: Any = camgeo.check(camgeo.load(recipe.replace("2800", "1400")))
@@ -192,7 +188,6 @@ def test_each_opening_of_a_turn_is_judged() -> None:
     assert report["forces"]["contacts"][0]["min"] == pytest.approx(once["contacts"][0]["min"])
 
 
-@pytest.mark.slow
 def test_float_is_judged_while_the_valve_is_open_and_the_load_holds_the_tappet_before() -> None:
     """At 2800 turns the tappet alone would leave the cam where it decelerates in its lash, if it did."""
     report: Any = camgeo.check(camgeo.load(text(CONSTANT)))
@@ -275,7 +270,6 @@ def test_a_valve_that_never_opens_is_refused() -> None:
 
 
 # needs: made
-@pytest.mark.slow
 def test_on_a_made_part_float_is_judged_while_the_valve_is_open(tmp_path: Path) -> None:
     recipe = text("1.5", lash="0").replace(
         "{formula: 4*(1 - cos(t))}",
@@ -291,7 +285,6 @@ def test_on_a_made_part_float_is_judged_while_the_valve_is_open(tmp_path: Path) 
     assert [row["intended"], row["made"]] == pytest.approx([intended["min"]] * 2, rel=0.01)  # not the dwell's 0
 
 
-@pytest.mark.thin(2)
 @pytest.mark.parametrize("carrier", ["valve", "tappet"])
 def test_a_valve_moves_with_its_mass_and_its_spring_each_without_the_other(carrier: str) -> None:
     """While it is open the mass of the valve counts 1.6 squared times, whatever carries the spring."""

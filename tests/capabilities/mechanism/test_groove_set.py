@@ -39,7 +39,7 @@ def assembled(text):
     return build_assembly(recipe, design, *contours)
 
 
-@pytest.mark.slow
+@pytest.mark.thin(2)
 @pytest.mark.parametrize(("text", "bodies"), [(STEM, 7), (ARM, 7)])
 def test_nothing_meets_and_the_roller_stays_in_the_groove(text, bodies):
     assembly = assembled(text)

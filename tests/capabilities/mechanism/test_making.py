@@ -107,7 +107,7 @@ def made(name: str) -> tuple[Recipe, Design, Assembly]:
     return build(SHAPES[name] + (HUBS + PART.partition("\n")[2] if name.endswith("hubs") else PART))
 
 
-@pytest.mark.thin(12)
+@pytest.mark.thin(3)
 @pytest.mark.parametrize("name", few(SHAPES, 3))
 def test_every_body_is_one_closed_piece_with_the_volume_of_its_plates(name: str) -> None:
     import shapely
@@ -164,6 +164,7 @@ def test_what_is_pressed_together_overlaps_by_no_more_than_the_press(name: str) 
 
 
 @pytest.mark.slow
+@pytest.mark.thin(12)
 @pytest.mark.parametrize("name", few(["yoke, hubs", "flat pair", *OFF, *GUIDED], 2))
 def test_nothing_meets_at_any_angle(name: str) -> None:
     checks = collision_checks(made(name)[2])
@@ -175,7 +176,7 @@ def test_nothing_meets_at_any_angle(name: str) -> None:
     assert checks[0].value == 0.2
 
 
-@pytest.mark.thin(36)
+@pytest.mark.thin(12)
 @pytest.mark.parametrize("name", SHAPES)
 def test_rates_are_those_of_the_places(name: str) -> None:
     phi, h = np.array([0.4, 2.0, 4.4]), 1e-5
@@ -195,7 +196,7 @@ def carried(assembly: Assembly, name: str, point: tuple[float, float]) -> np.nda
     return np.column_stack([x + point[0] * c - point[1] * s, y + point[0] * s + point[1] * c])
 
 
-@pytest.mark.thin(20)
+@pytest.mark.thin(10)
 @pytest.mark.parametrize(
     ("name", "one", "point", "other", "there"),
     [
@@ -260,7 +261,6 @@ def test_the_pair_of_faces_stands_off_by_half_the_clearance() -> None:
         assert np.abs(off).min() == pytest.approx(assembly.sizes.gap_each_side)
 
 
-@pytest.mark.slow
 def test_rollers_are_exactly_as_intended_and_turn_on_their_pins() -> None:
     assembly = made("double roller")[2]
     for side in ("a", "b"):
@@ -315,7 +315,6 @@ def test_a_stem_runs_on_its_own_line_between_its_guides_blocks() -> None:
     assert gaps == pytest.approx([0.5 * (s.bar + s.clearance)] * 2)
 
 
-@pytest.mark.slow
 def test_over_a_pivot_within_the_disc_the_cam_holds_the_arm() -> None:
     _, _, assembly = made("pivot within")
     assert "retainer-pivot" not in {member.name for member in assembly.members}
@@ -324,7 +323,6 @@ def test_over_a_pivot_within_the_disc_the_cam_holds_the_arm() -> None:
     assert "keeps the arm on its pin" in assembly.remarks[0]
 
 
-@pytest.mark.thin(2)
 @pytest.mark.parametrize(
     ("bore", "more", "area"),
     [
@@ -347,7 +345,6 @@ def test_the_shaft_fits_the_bore(bore: str, more: str, area: float) -> None:
     assert inner == pytest.approx(journal - 0.05)
 
 
-@pytest.mark.thin(2)
 @pytest.mark.parametrize("more", ["flat: {across: 7}", "keyway: {width: 2, depth: 1, at: 90}"])
 def test_the_shaft_of_a_flat_or_a_key_keeps_the_clearance_all_round(more: str) -> None:
     assembly = build(SHAPES["yoke"] + PART.replace("bore: 8", f"bore: 8, {more}"))[2]
@@ -370,7 +367,6 @@ def turns_in(drive: ArcSpline, bore: ArcSpline, play: float) -> bool:
     )
 
 
-@pytest.mark.thin(3)
 @pytest.mark.parametrize(
     ("bore", "held"),
     [
@@ -465,7 +461,6 @@ def test_a_pivot_that_stands_through_the_cam_is_caught() -> None:
     assert check.value < -3.9
 
 
-@pytest.mark.slow
 def test_too_small_an_axial_gap_is_caught() -> None:
     assembly = only(made("yoke")[2], "yoke", "cap-right")
     assert all(check.ok for check in collision_checks(assembly))
@@ -555,7 +550,7 @@ def test_what_finds_no_room_is_refused_at_its_field(name: str, old: str, new: st
     assert caught.value.field == field
 
 
-@pytest.mark.thin(12)
+@pytest.mark.thin(6)
 @pytest.mark.parametrize(
     ("name", "old", "new", "field", "part", "remedy", "mended"),
     [

@@ -89,7 +89,7 @@ def failing(mesh, one, tolerance=E):
     return {check.name for check in checks if not check.ok}
 
 
-@pytest.mark.thin(4)
+@pytest.mark.thin(2)
 @pytest.mark.parametrize("precision", [SINGLE, DECIMALS], ids=["stl", "3mf"])
 @pytest.mark.parametrize("name", BODIES)
 def test_plates_become_one_closed_body_of_their_volume(name, precision):
@@ -327,7 +327,6 @@ MEANT = {
 }
 
 
-@pytest.mark.thin(3)
 @pytest.mark.parametrize("name", MEANT)
 def test_a_body_that_is_another_one(sound, name):
     one, mesh = sound
@@ -376,7 +375,6 @@ def test_outlines_are_held_to_the_tolerance(sense, share, caught):
     assert failing(column(SQUARE + np.array([sense * share * E, 0.0])), BLOCK) == caught
 
 
-@pytest.mark.thin(2)
 @pytest.mark.parametrize("others", [[], [Plate(box(-3.0, -3.0, 3.0, 3.0), (), 0.0, 8.0)]], ids=["alone", "in a union"])
 def test_a_polygon_for_a_disc_is_seen_in_the_middle_of_its_edges(others):
     """All corners lie on the circle, and those of the circle on the polygon."""

@@ -84,7 +84,7 @@ def test_an_stl_for_each_body_lying_flat(tmp_path):
     assert trimesh.load(tmp_path / "part-base.stl").volume == pytest.approx(5.0 * (6000.0 - math.pi * 5.2**2), rel=1e-4)
 
 
-@pytest.mark.slow
+@pytest.mark.costly("a set of bodies, made and judged twice")
 def test_one_3mf_for_printing_and_one_in_place(tmp_path):
     recipe, design, (files, checks) = made(tmp_path, "3mf")
     assert [file.path.name for file in files] == ["part-parts.3mf", "part-assembly.3mf"]

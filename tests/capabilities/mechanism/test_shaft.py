@@ -118,7 +118,6 @@ def test_sections_of_a_shaft() -> None:
     assert (ring.low, ring.high, *sizes) == pytest.approx((0.3, 2.3, 6.8**2, 4.75**2))
 
 
-@pytest.mark.thin(3)
 @pytest.mark.parametrize("seed", range(6))
 def test_the_knob_stands_above_what_passes_under_it(seed: int) -> None:
     """A disc on a body that swings: the knob's corners with 1 mm of air pass within 9.66 mm of the shaft."""

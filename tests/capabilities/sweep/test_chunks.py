@@ -78,7 +78,6 @@ def test_a_sound_chunk_of_another_place_is_noticed(mine: tuple[str, int, int]) -
         decode(encode("key", 0, 3, {"a": np.arange(3.0)}), *mine)
 
 
-@pytest.mark.thin(3)
 @pytest.mark.parametrize("fault", ["torn", "empty", "changed", "planted", "foreign", "gone"])
 def test_a_spoilt_chunk_is_computed_again_and_no_other(filled: Chunks, tmp_path: Path, fault: str) -> None:
     sound = {path.name: path.read_bytes() for path in filled.folder.iterdir()}
@@ -183,7 +182,6 @@ def test_the_key_changes_with_all_that_decides_the_outcome(monkeypatch: pytest.M
     assert job().key != key
 
 
-@pytest.mark.slow
 def test_what_does_not_bear_on_the_figures_leaves_the_key() -> None:
     def key(recipe: SweepTask) -> str:
         return SweepJob(recipe.plan, recipe.scene(recipe.figures), hills).key
@@ -206,7 +204,6 @@ def test_what_does_not_bear_on_the_figures_leaves_the_key() -> None:
     assert key(SweepTask.from_recipe(read(text.encode(), "four-bar.yaml"))) != plain
 
 
-@pytest.mark.slow
 def test_limits_cost_computing_only_where_they_ask_for_another_figure() -> None:
     def key(limits: str, rank: str = "dwell") -> str:
         text = task(rank=rank).recipe.text.replace("margin: {at_least: 1.0}", limits)

@@ -73,7 +73,7 @@ def test_verbose_tells_counts_and_designs(tmp_path: Path, capsys: pytest.Capture
     assert f"  best-1.yaml: cam.shaft[0] 15.8333, linkage.rocker 95\n    {FIRST}\n" in said
 
 
-@pytest.mark.slow
+@pytest.mark.thin(2)
 @pytest.mark.usefixtures("no_pictures")
 @pytest.mark.parametrize(("margin", "status"), [(1.0, 3), (99.0, 1)])
 def test_a_file_left_out_for_want_of_a_package_exits_3(
@@ -191,7 +191,6 @@ def test_a_users_file_in_the_way_exits_3_and_stays(tmp_path: Path, capsys: pytes
     assert not (folder / "sweep.json").exists()
 
 
-@pytest.mark.thin(2)
 @pytest.mark.parametrize(
     ("package", "extra", "change", "options"),
     [

@@ -165,7 +165,6 @@ def test_more_processes_are_started_only_where_they_pay(monkeypatch: pytest.Monk
     assert started == [(list(range(1, GRID.chunks)), 3), (list(range(1, GRID.chunks)), 4)]
 
 
-@pytest.mark.thin(3)
 @pytest.mark.usefixtures("pooled")
 @pytest.mark.parametrize("engine", ["serial", "processes", "dask"])
 def test_a_fault_of_what_computes_comes_through(engine: str, request: pytest.FixtureRequest, tmp_path: Path) -> None:

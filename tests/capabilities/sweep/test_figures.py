@@ -173,7 +173,7 @@ def test_a_design_depends_on_no_other_to_the_last_bit():
         assert np.array_equal(column, np.concatenate([part.figures[name] for part in parts]), equal_nan=True), name
 
 
-@pytest.mark.slow
+@pytest.mark.thin(4)
 @pytest.mark.parametrize(
     ("shape", "given"),
     [
@@ -189,7 +189,6 @@ def test_fields_of_the_cam_that_vary(shape, given):
     assert_like(found.figures, exact(recipe_with(one, tuple(given), list(given.values()))), row=1)
 
 
-@pytest.mark.slow
 def test_a_cam_with_breaks():
     given = {"cam.reuleaux.rounding": 12.0, "linkage.rocker": 100.0}
     one = recipe("reuleaux: {sides: 3, breadth: 50, rounding: 10}", pivot="[5, 3]", band=0.5)
@@ -240,7 +239,6 @@ def swept(limits):
     return load_text(base.text + SWEPT.replace("LIMITS", limits), "a.yaml")
 
 
-@pytest.mark.thin(3)
 @pytest.mark.parametrize(
     ("rank", "limits", "without"),
     [
@@ -306,7 +304,6 @@ def test_a_limit_on_the_dwell_is_told_too():
     assert [REASONS[code] == "limits" for code in found.reason] == (found.figures["dwell"] < 37).tolist()
 
 
-@pytest.mark.slow
 def test_lengths_are_in_the_units_of_the_recipe_and_figures_in_mm():
     inch = recipe("fourier: {mean: 1, cos: {3: 0.05}}", pivot="[0.5, 0.2]", units="inch", linkage=FOUR_BAR_INCH)
     given = {"cam.shaft[0]": 0.55, "linkage.ground": 3.0, "cam.fourier.cos.3": 0.06}
@@ -357,7 +354,6 @@ def test_a_recipe_without_a_linkage():
     assert [REASONS[code] for code in bent.reason] == ["", "undercut"]
 
 
-@pytest.mark.slow
 def test_a_bore_has_no_bearing_on_a_cam_without_a_linkage_but_the_shaft_lies_within():
     given = np.array([[18.0, 0.0], [30.0, 0.0], [0.0, -27.0]])
     bored = load_text(recipe(linkage="").text.replace("thickness: 8", "thickness: 8, bore: 30"), "a.yaml")
@@ -433,7 +429,7 @@ def test_links_that_shape_the_cam_make_it_anew():
 
 
 # needs: dynamics
-@pytest.mark.slow
+@pytest.mark.thin(4)
 @pytest.mark.parametrize("figure", ["contact-force-least", "shaft-torque", "contact-pressure", "guide-force"])
 def test_forces_of_a_rigid_train_are_ranked_by(figure):
     """Those of each design's own cam, as limits have them."""

@@ -15,7 +15,7 @@ from camgeo.capabilities.sweep.plan import Plan
 from camgeo.recipe.limits import Limit
 
 
-@pytest.mark.thin(4)
+@pytest.mark.thin(2)
 @pytest.mark.parametrize("most", [True, False])
 @pytest.mark.parametrize(
     "limits",

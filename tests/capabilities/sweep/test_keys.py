@@ -164,7 +164,6 @@ ROCKER = "  vary: {linkage.rocker: [95, 100]}\n"
 FIRST_PATH = "cam.fourier.mean"
 
 
-@pytest.mark.thin(4)
 @pytest.mark.parametrize(
     ("axis", "message"),
     [
@@ -255,7 +254,6 @@ def test_a_number_that_an_alias_shares_cannot_vary() -> None:
     assert sweep("  {vary: {linkage.ground: [80]}, rank: dwell}", base.replace("ground: 80", "ground: &g 80"))
 
 
-@pytest.mark.thin(4)
 @pytest.mark.parametrize(
     ("body", "messages"),
     [
@@ -380,7 +378,6 @@ def test_a_bound_on_the_number_of_axes() -> None:
     assert told(f"  vary: {{{axes}}}\n{RANK}") == ["1:9: sweep.vary: more than 20 axes, given 21; leave some out"]
 
 
-@pytest.mark.thin(4)
 @pytest.mark.parametrize(("name", "figure"), FIGURES.items())
 def test_a_figure_needs_what_it_is_taken_from(name: str, figure: object) -> None:
     needs = FIGURES[name].needs

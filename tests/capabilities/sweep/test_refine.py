@@ -109,7 +109,6 @@ def test_listed_values_stay():
     assert polish(alone, {"linkage.rocker": 105.0})[0] == {"linkage.rocker": 105.0}
 
 
-@pytest.mark.slow
 def test_where_there_is_nothing_to_gain_the_start_stays():
     # the cam's least radius of curvature does not depend on where its shaft is
     asked = task(rank="radius-of-curvature", vary="'cam.shaft[0]': {from: -20, to: 20}")
@@ -122,7 +121,6 @@ def test_a_polished_zero_has_no_sign():
     assert repr(float(refine._rounded(goal, np.array([-1e-9]))[0])) == "0.0"
 
 
-@pytest.mark.slow
 def test_designs_made_one_by_one(monkeypatch):
     monkeypatch.setattr(refine, "_MEMBERS", 6)
     monkeypatch.setattr(refine, "_ANGLES", 90)

@@ -34,7 +34,6 @@ def test_a_cycloidal_rise_by_shares_of_its_piece() -> None:
     assert rate == pytest.approx(20.0 * (1.0 - np.cos(turn * share)), abs=1e-12)  # by the share
 
 
-@pytest.mark.slow
 def test_numbers_that_act_linearly_only_shift_the_samples() -> None:
     def sample(numbers, counts):
         return sample_cam(cam(*numbers), 120, counts)

@@ -119,7 +119,6 @@ def test_estimates_anywhere_are_near_the_exact_designs(name, law, shares):
         assert_near(estimates, exact)
 
 
-@pytest.mark.slow
 def test_why_a_design_has_no_estimate():
     text, ranges = CAMS["roller"]
     one = recipe(text, ranges)
@@ -133,7 +132,6 @@ def test_why_a_design_has_no_estimate():
     assert [REASONS[code] for code in outside.reason] == ["shaft-outside"]
 
 
-@pytest.mark.slow
 def test_what_acts_otherwise_is_worked_out_anew():
     """The angle of a point moves a spline, and a number of waves makes another cam: neither acts linearly."""
     cam = "kind: disc, base_radius: 40, follower: {kind: roller, radius: 8}, motion: {points: "
@@ -175,7 +173,6 @@ def test_what_is_weighed_is_worked_out(rank, why):
     assert ("mass" in asked.figures) == bool(why)
 
 
-@pytest.mark.slow
 def test_few_designs_are_all_exact():
     few, many = (recipe(*CAMS["roller"], sweep=f"method: random, count: {n}, rank: size") for n in (EXACT, EXACT + 1))
     assert not SweepTask.from_recipe(few).screened
@@ -240,7 +237,6 @@ def test_files_tell_words(tmp_path):
     assert not made.uses
 
 
-@pytest.mark.slow
 def test_words_of_a_linkage():
     text = "cam: {kind: support, p: 25 + sin(3*t), shaft: [12, 6]}\ndwell: {band: 0.1}\n"
     text += "linkage: {kind: four-bar, ground: 80, coupler: 70, rocker: 105, assembly: open}\n"
@@ -367,7 +363,6 @@ def test_the_next_design_follows_where_one_falls(swept):
     assert not set(best[:2]) & set(indices)
 
 
-@pytest.mark.slow
 @pytest.mark.usefixtures("no_pictures")
 def test_where_all_fall_none_is_kept_and_the_nearest_is_exact(swept):
     hard = SEARCH.replace("at_most: 35", "at_most: 4")

@@ -40,6 +40,7 @@ def apart_by_hand(count: int) -> list[int]:
 
 @pytest.mark.slow
 @pytest.mark.usefixtures("no_pictures", "pooled")
+@pytest.mark.thin(2)
 @pytest.mark.parametrize("jobs", [1, 2])
 def test_the_best_that_lie_apart_are_polished_and_equal_ones_are_one(jobs: int, tmp_path: Path) -> None:
     text = task(refine="true").recipe.text.replace("keep: 3", "keep: 20")
@@ -58,7 +59,6 @@ def test_the_best_that_lie_apart_are_polished_and_equal_ones_are_one(jobs: int, 
     assert load(outcome.folder / "best-1.yaml").about.startswith(f"polished from design {best[0]['index']} of 825")
 
 
-@pytest.mark.slow
 @pytest.mark.usefixtures("no_pictures")
 def test_the_table_holds_what_was_polished_and_the_best_lie_apart(tmp_path: Path) -> None:
     text = task(refine="true").recipe.text.replace("keep: 3", "keep: 20")
@@ -117,7 +117,6 @@ def test_a_sweep_that_finds_nothing_leaves_the_last_files_alone(tmp_path: Path) 
     assert outcome.work.computed == 0  # other limits, the same figures
 
 
-@pytest.mark.slow
 @pytest.mark.usefixtures("no_pictures")
 def test_a_run_that_finds_all_as_it_was_makes_no_file_again(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
     monkeypatch.setattr(searches, "COMPUTING", PROCEDURES)

@@ -27,7 +27,6 @@ def test_words_go_in_by_their_index_and_numbers_as_they_are() -> None:
     assert next(circle.radius for circle in cam.circles()) == 50.0
 
 
-@pytest.mark.slow
 def test_a_design_has_its_figures_or_a_reason() -> None:
     recipe = load_text(TEXT, "a.yaml")
     values = np.array([[50.0], [1.0], [-1.0]])

@@ -44,7 +44,7 @@ def sampled(f, x):
     return Samples(f[0], *cell_bounds(*f), np.stack([x[0], np.broadcast_to(angles(f[0].shape[1]), x[0].shape)]))
 
 
-@pytest.mark.thin(5)
+@pytest.mark.thin(2)
 @pytest.mark.parametrize("n", [24, 60, 360])
 @pytest.mark.parametrize("band", [1e-9, 0.003, 0.2, 2.0, 50.0])
 def test_the_windows_are_those_of_two_pointers(n, band):
@@ -111,6 +111,7 @@ def reach_of_all(samples, band, row, k):
 
 
 @pytest.mark.slow
+@pytest.mark.thin(2)
 @pytest.mark.parametrize("band", [0.01, 0.1, 0.6, 30.0])
 def test_no_window_reaches_farther(band):
     samples = sampled(*waves(5, 12, 40))
@@ -154,6 +155,7 @@ def exact(seed, m, row):
 
 
 @pytest.mark.slow
+@pytest.mark.thin(3)
 @pytest.mark.parametrize("band", [0.003, 0.05, 0.4])
 def test_lengths_are_those_of_kin(band):
     m = 12
@@ -163,7 +165,6 @@ def test_lengths_are_those_of_kin(band):
         assert np.abs(relative - wanted).max() < tolerance
 
 
-@pytest.mark.slow
 def test_the_error_falls_with_the_fourth_power_of_the_step():
     m = 40
     coarse, fine, finest = (lengths_of(waves(8, m, n), 0.02)[0] for n in (180, 360, 1440))
@@ -214,7 +215,6 @@ def test_where_cubics_pass_a_level():
         assert (np.abs(cubic(found) - cubic(x)) < 1e-12 * (rise + np.abs(cubic.f))).all()
 
 
-@pytest.mark.slow
 def test_extremes_between_samples():
     (f, _), _ = waves(7, 20, 360)
     dense = waves(7, 20, 36_000)[0][0]

@@ -55,7 +55,6 @@ def test_durations_are_those_of_the_tappet_at_the_lift_less_the_lash() -> None:
     assert measured(LOBE + VALVE, "valve-lift: {at_least: 1}") == pytest.approx([12.5], abs=1e-12)
 
 
-@pytest.mark.slow
 def test_velocity_and_acceleration_while_it_is_open() -> None:
     degrees = np.linspace(0.0, 229.032572283 / 4, 400_001)
     rows = 1.6 * lift(degrees)
@@ -160,7 +159,6 @@ def test_a_limit_says_that_the_valve_does_not_lift_so_far() -> None:
         assert f"{words}, and is not above 13 mm" in limit.detail
 
 
-@pytest.mark.slow
 def test_inches_are_the_same_valve() -> None:
     inch = LOBE.replace("18", "18/25.4").replace("lift: 8", "lift: 8/25.4").replace("14}", "14/25.4}")
     text = f"units: inch\n{inch}valve: {{ratio: 1.6, lash: 0.30/25.4}}\n"
@@ -283,7 +281,7 @@ def test_a_lobe_without_a_valve_has_no_events_at_the_lift_of_valves(tmp_path: Pa
     assert pump["lift"] == pytest.approx(4.0, abs=1e-9)
 
 
-@pytest.mark.slow
+@pytest.mark.thin(2)
 @pytest.mark.parametrize(("units", "lifts"), [("mm", (0.1, 1.0)), ("inch", (0.006, 0.05, 0.2))])
 def test_the_tappets_durations_at_the_lifts_of_cards_are_told_without_a_limit(
     units: str, lifts: tuple[float, ...]

@@ -8,7 +8,6 @@ from camgeo.output.pipeline import check
 from camgeo.recipe.starter import starter
 
 
-@pytest.mark.slow
 @pytest.mark.parametrize("name", ANSWERS.starters)
 def test_the_starter_passes_with_its_lift_and_its_lash(name: str) -> None:
     report = check(load(starter(name))).report

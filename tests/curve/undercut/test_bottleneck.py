@@ -37,7 +37,7 @@ def least_of_pairs(curve, count=700):
     return radius.min()
 
 
-@pytest.mark.slow
+@pytest.mark.thin(3)
 @pytest.mark.parametrize("share", [0.5, 0.8, 0.95])
 @pytest.mark.parametrize("e", [1.0, 40.0])
 def test_the_waist_of_booths_lemniscate(share, e):
@@ -97,7 +97,6 @@ def test_alike_necks_are_all_found():
     assert [n.second for n in necks] == pytest.approx([2 * math.pi - float(at), math.pi + float(at)], abs=1e-8)
 
 
-@pytest.mark.slow
 @given(
     st.lists(st.tuples(st.integers(2, 7), st.floats(-4.0, 4.0), st.floats(0.0, 6.28)), min_size=1, max_size=3),
     st.floats(1.0, 25.0),
@@ -138,7 +137,7 @@ def test_where_newtons_method_has_not_come_to_is_no_neck(monkeypatch, steps):
     assert neck.half == pytest.approx(LENGTH * math.sqrt(0.38), rel=2e-9)
 
 
-@pytest.mark.slow
+@pytest.mark.thin(2)
 @pytest.mark.parametrize("share", few([0.98, 0.999, 1.0 - 1e-6], 2))
 def test_a_waist_almost_folded_is_measured(share):
     # bent on its outer side to a hundredth of its width and less

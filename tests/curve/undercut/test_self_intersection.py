@@ -76,7 +76,7 @@ def test_breaks_repeat():
     assert all_breaks(wave(9.0), -7.0, 14.0).size == 0
 
 
-@pytest.mark.thin(4)
+@pytest.mark.thin(2)
 @pytest.mark.parametrize("margin", [1e-2, 1e-4, 1e-6, 1e-8, 1e-10, 1e-12])
 def test_a_swallowtail_crosses_at_root_three_of_its_reversal(margin):
     # sigma = a - 8 cos 3t is 36 (t^2 - d^2) to leading order, whose integral vanishes from -sqrt(3) d to sqrt(3) d

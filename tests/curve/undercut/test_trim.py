@@ -113,7 +113,6 @@ def test_a_sound_curve_is_returned_as_it_is():
         assert trimmed(curve) is curve
 
 
-@pytest.mark.thin(3)
 @pytest.mark.parametrize("a", [15.9, 15.0, 10.0, 4.0, 2.1])
 def test_three_corners_in_closed_form(a):
     # p = a + 2 cos 3t: the corners lie on the axes of symmetry, where p sin t + p' cos t = 0
@@ -133,7 +132,6 @@ def test_three_corners_in_closed_form(a):
     )
 
 
-@pytest.mark.slow
 @given(
     st.floats(12.0, 30.0),
     st.lists(st.tuples(st.integers(2, 8), st.floats(-1.0, 1.0), st.floats(-1.0, 1.0)), min_size=1, max_size=3),
@@ -152,6 +150,7 @@ def test_flat_faces_leave_the_body_of_their_half_planes(mean, terms):
 
 
 @pytest.mark.slow
+@pytest.mark.thin(3)
 @pytest.mark.parametrize(
     ("mean", "cos", "sin", "backwards", "left"),
     [
@@ -189,6 +188,7 @@ def test_rollers_leave_the_eroded_body(shape, e):
 
 
 @pytest.mark.slow
+@pytest.mark.thin(3)
 @pytest.mark.parametrize("e", [19.0, 19.3, 19.6])
 def test_a_bulb_too_small_for_the_roller_goes_with_its_neck(e):
     # both the bulb's end and the neck are too tight: one stretch is lost, and one corner left
@@ -221,7 +221,7 @@ def test_any_star_is_eroded_or_refused(terms, e):
     assert area(curve) == pytest.approx(body.area, abs=2e-3 * body.length)
 
 
-@pytest.mark.thin(4)
+@pytest.mark.thin(2)
 @pytest.mark.parametrize("e", [8.0, 10.0, 12.0])
 def test_no_contact_cuts_into_what_is_left(e):
     curve = trimmed(roller(STAR, e))
@@ -297,7 +297,6 @@ def test_only_convex_faces():
         trimmed(Curve.whole(STAR))
 
 
-@pytest.mark.slow
 def test_a_neck_leaves_two_corners_and_two_pieces():
     curve = roller(PEAR, 15.0)
     what = remains(curve, causes(curve))

@@ -57,7 +57,6 @@ def lost_motion(shape, at, count=20_000):
     return p[count:] - (corners @ frame.normal[count:].T).max(axis=0)
 
 
-@pytest.mark.thin(2)
 @pytest.mark.parametrize(
     "curve",
     [
@@ -100,6 +99,7 @@ def test_depth_follows_its_law_however_small(margin):
 
 
 @pytest.mark.slow
+@pytest.mark.thin(3)
 @pytest.mark.parametrize(("base", "name"), [(5.0, "parabolic"), (1.0, "modified-sine"), (1.0, "harmonic")])
 def test_depth_is_the_lost_motion_of_a_flat_face(base, name):
     curve = breadth(base, name)
@@ -112,7 +112,6 @@ def test_depth_is_the_lost_motion_of_a_flat_face(base, name):
         assert lost[1:-1].min() > -1e-6
 
 
-@pytest.mark.slow
 def test_the_smallest_base_radius():
     growth = max(u.free_at for u in undercuts(breadth(5.0, "modified-sine")))
     assert undercuts(breadth(5.0 + growth + 1e-9, "modified-sine")) == ()
@@ -148,7 +147,6 @@ def not_passed_over(curve):
         return "cannot be separated" in str(error)
 
 
-@pytest.mark.slow
 def test_eight_swallowtails_below_rounding_are_told_apart():
     """Their extent is below what points can tell; speed times tangent over each of them still does."""
     k, mean = 8, 16.414588076454564
@@ -200,7 +198,7 @@ def test_depth_of_a_roller_is_how_far_it_hangs_free():
         assert u.depth == pytest.approx(np.hypot(apart[..., 0], apart[..., 1]).min(axis=1).max() - e, abs=1e-5)
 
 
-@pytest.mark.slow
+@pytest.mark.thin(6)
 @pytest.mark.parametrize("excess", [1e-9, 1e-6, 1e-3, 0.1, 0.5])
 def test_the_neck_of_booths_lemniscate(excess):
     # m^2/l^2 = 0.9: the waist is sqrt(0.2) l, the ends have a radius of 60.06 mm
@@ -217,7 +215,6 @@ def test_the_neck_of_booths_lemniscate(excess):
         assert 0.0 <= u.depth < excess * waist
 
 
-@pytest.mark.slow
 def test_contact_lost_at_a_neck_of_a_lemniscate():
     # symmetric: a position is lost where the contour has crossed the y axis
     shape = booth(60.0, 60.0 * math.sqrt(0.9))
@@ -228,7 +225,7 @@ def test_contact_lost_at_a_neck_of_a_lemniscate():
     assert corners[1] == pytest.approx(corners[2], abs=1e-12)
 
 
-@pytest.mark.thin(4)
+@pytest.mark.thin(2)
 @pytest.mark.parametrize("e", [14.0, 16.0, 18.0])
 def test_a_neck_off_the_axis_of_symmetry(e):
     found = undercuts(roller(PEAR, e))
@@ -248,7 +245,6 @@ def test_both_kinds_at_once():
     assert undercuts(roller(PEAR, smallest * (1.0 - 1e-9))) == ()
 
 
-@pytest.mark.slow
 def test_a_neck_is_reported_beside_sharper_lobes():
     # r = 20 + 10 cos 2t + 2 cos 6t: the waist is 16 mm wide, the ends have the radius 32^2/(32 + 4 * 28) = 7.11 mm
     found = undercuts(roller(waves(20.0, (2, 10.0, 0.0), (6, 2.0, 0.0)), 8.2))
@@ -301,7 +297,6 @@ def test_necks_wider_than_the_sharpest_place_count_for_nothing_where_that_is_und
     assert found.necks == ()
 
 
-@pytest.mark.slow
 def test_parts_of_a_turn_that_are_alike_are_undercut_alike():
     """A motion that repeats three times: each part has the same stretch, a third of a turn on."""
     segments = "[{rise: 9, over: 30, law: cycloidal}, {return: 9, over: 30, law: cycloidal}, {dwell: 60}]"

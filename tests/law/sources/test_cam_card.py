@@ -94,7 +94,6 @@ def test_a_card_of_a_member_is_met_with_no_greater_peak(powers, half, lift, coun
     assert peak(motion, mixture.side.half) <= peak(single, math.radians(half)) * (1.0 + 2e-3)
 
 
-@pytest.mark.thin(2)
 @pytest.mark.parametrize(("count", "least"), [(2, 33.2931), (3, 34.6983)])
 def test_the_search_goes_on_where_the_peak_bends_down_towards_its_valley(count, least):
     """The least peaks are scipy's, over angles of about 75.015 and 74.723 degrees, bounded at 700 places."""
@@ -129,6 +128,7 @@ def test_no_angle_has_a_lower_peak_by_another_solver(count):
 
 
 @pytest.mark.slow
+@pytest.mark.thin(2)
 @pytest.mark.parametrize("card", [((1.27, 228.0), (0.15, 250.0), (5.08, 140.0)), ((1.27, 228.0), (5.08, 60.0))])
 def test_a_card_that_none_meets_is_refused_with_the_nearest_which_is_met(card):
     with pytest.raises(IntentError, match=r"the nearest has .* off: give those") as caught:
@@ -150,7 +150,6 @@ def test_a_card_that_none_meets_is_refused_with_the_nearest_which_is_met(card):
         solved(half_way)
 
 
-@pytest.mark.slow
 def test_uneven_sides_meet_their_own_cards_and_one_acceleration_at_the_nose():
     opening = side_card(((1.27, 112.0), (0.15, 134.0)), 2.0, ramp=Ramp(0.1, 0.01 * math.degrees(1.0)))
     closing = side_card(((1.27, 118.0), (0.2, 138.0)), 2.0)
@@ -196,7 +195,7 @@ def crossed(members, shares, half, at):
     return half * low, sum(share * 2.0 * c[0] for share, c, _ in terms)
 
 
-@pytest.mark.slow
+@pytest.mark.thin(3)
 @pytest.mark.parametrize(("other", "members", "shares", "half", "seconds"), BORDER)
 def test_true_lobes_of_few_members_are_met_though_they_lie_on_the_border(other, members, shares, half, seconds):
     """The closing side mixes its members by `other` and over the angle that gives it the opening's S'' at the nose."""
@@ -222,7 +221,6 @@ ROUNDED = (  # of a true lobe on the border, in thousandths of a degree: none me
 RAMP = Ramp(0.2, 0.015 * math.degrees(1.0))
 
 
-@pytest.mark.slow
 def test_a_card_that_rounding_took_beyond_the_border_is_met_within_its_rounding():
     cards = side_card(ROUNDED[0], ramp=RAMP), side_card(ROUNDED[1], 2.0, ramp=RAMP)
     first, second = sides_of_card(6.61, *cards, HALF_TURN)
@@ -244,7 +242,6 @@ def test_the_nearest_card_is_the_nearest_over_a_lattice_of_both_angles():
     assert 0.767 <= off <= 0.82
 
 
-@pytest.mark.slow
 def test_uneven_sides_have_the_peak_of_the_worse_one_alone_where_the_other_can_follow_its_nose():
     worse = max(peaks(*sides_of_card(LIFT, card, card, HALF_TURN)) for card in AGREE)
     assert peaks(*sides_of_card(LIFT, *AGREE, HALF_TURN)) == pytest.approx(worse, rel=2e-4)
@@ -362,7 +359,6 @@ def test_sides_whose_noses_do_not_agree_are_refused_with_the_nearest_that_do(mon
     assert nearest - 0.005 < off < nearest + 0.02
 
 
-@pytest.mark.slow
 @pytest.mark.parametrize(
     ("lift", "card"),
     [
@@ -422,7 +418,7 @@ def velocity(motion, half):
     return float(np.abs(motion.derivatives(np.linspace(0.0, half, 20_001), 1)[1]).max())
 
 
-@pytest.mark.slow
+@pytest.mark.thin(2)
 @pytest.mark.parametrize("card", [CARD[:1], CARD])
 def test_the_velocity_is_the_least_that_a_programme_over_all_angles_finds(card):
     """Against the same choice by scipy's programme at angles from foot to nose about that found: none is below."""

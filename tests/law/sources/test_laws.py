@@ -92,7 +92,6 @@ def test_every_law_has_its_published_peaks():
     assert set(PUBLISHED) == set(NAMES)
 
 
-@pytest.mark.thin(4)
 @pytest.mark.parametrize("name", NAMES)
 def test_peaks_are_the_published_ones(name):
     law = named(name)
@@ -104,7 +103,7 @@ def test_peaks_are_the_published_ones(name):
             assert figure == pytest.approx(float(text), abs=0.5001 * 10.0**-places)
 
 
-@pytest.mark.thin(4)
+@pytest.mark.thin(2)
 @pytest.mark.parametrize("name", NAMES)
 def test_peaks_are_reached_and_not_passed(name):
     law = named(name)
@@ -122,7 +121,6 @@ def test_shares_of_a_named_member_give_the_named_law(name):
     assert scca(*_MEMBERS[name]) is named(name)
 
 
-@pytest.mark.thin(3)
 @pytest.mark.parametrize("name", WRITTEN)
 def test_derivatives_to_the_fourth_are_those_of_the_textbook_formula(name):
     motion = named(name).motion
@@ -136,7 +134,6 @@ def test_derivatives_to_the_fourth_are_those_of_the_textbook_formula(name):
                 assert (np.abs(ours - true) <= 1e-14 * np.array(scale)).all()
 
 
-@pytest.mark.thin(4)
 @pytest.mark.parametrize("name", NAMES)
 def test_ends_are_exact_and_joints_smooth(name):
     law = named(name)

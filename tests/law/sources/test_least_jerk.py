@@ -50,7 +50,7 @@ def by_kernel(x, lo, hi):
     return 2.0 * optimize.lsq_linear(root, np.zeros(len(x)), (lo, hi), tol=1e-15, max_iter=1000).cost
 
 
-@pytest.mark.slow
+@pytest.mark.thin(2)
 @pytest.mark.parametrize("reading", [0.02, 0.2, 0.6])
 def test_the_integral_is_that_of_the_kernel(reading):
     x = np.arange(12) * TURN / 12 + 0.03 * np.sin(7.0 * np.arange(12))
@@ -69,7 +69,7 @@ def by_free_kernel(x, lo, hi):
     return 2.0 * optimize.lsq_linear(root, np.zeros(len(x)), (lo, hi), tol=1e-15, max_iter=1000).cost
 
 
-@pytest.mark.slow
+@pytest.mark.thin(2)
 @pytest.mark.parametrize("reading", [0.002, 0.02, 0.2])
 def test_with_free_ends_the_integral_is_that_of_their_kernel(reading):
     x = np.linspace(0.0, 3.0, 13) + 0.03 * np.sin(7.0 * np.arange(13))
@@ -145,7 +145,6 @@ def conditions(found, space, limits):
         assert abs(found.pull.sum()) <= 1e-6 * np.abs(found.pull).sum()
 
 
-@pytest.mark.slow
 @settings(max_examples=examples(60), deadline=None)
 @given(
     seed=st.integers(0, 10**6),
@@ -168,7 +167,7 @@ def test_the_conditions_of_a_least_hold(seed, count, places, stroke, rest):
         conditions(found, space, limits)
 
 
-@pytest.mark.thin(4)
+@pytest.mark.thin(2)
 @pytest.mark.parametrize("rest", [None, (0.3, -0.2), FREE, (None, -0.2)])
 @pytest.mark.parametrize("count", [69, 70, 71, 72, 73, 95, 96, 97, 120, 241, 700])
 def test_equations_in_blocks_have_the_solution_of_all_at_once(count, rest, monkeypatch):
@@ -227,7 +226,7 @@ def test_many_bounds_are_the_same_as_all_at_once(monkeypatch):
     assert excess_of_bounds(few.curve, limits)[0].max() <= 1e-5
 
 
-@pytest.mark.slow
+@pytest.mark.thin(2)
 @pytest.mark.parametrize("count", [3_000, 120_000])
 def test_a_search_among_noise_ends_before_it_touches_a_thousand_bounds(count, monkeypatch):
     knots = []

@@ -85,7 +85,6 @@ def test_unlike_flanks_are_one_evaluation_with_the_same_digits(monkeypatch):
     assert np.stack([mid, rad])[:, :, 1].tolist() == np.stack(balls[1])[:, :, 0].tolist()
 
 
-@pytest.mark.slow
 def test_many_points_of_a_flank_take_no_more_memory_than_their_parts():
     """Each point has the coefficients of its own flank, a hundred with high powers."""
     flanks = [Flank.of((2, 26, 50, 74, power), 8.0)[0] for power in (100, 98)]

@@ -81,7 +81,6 @@ def test_blends_are_degrees_in_the_order_in_which_they_are_passed() -> None:
     assert rate(made, [175.0, 190.0, 220.0, 240.0, 245.0]) == pytest.approx(-down, rel=1e-7)
 
 
-@pytest.mark.slow
 def test_one_number_is_both_blends_and_parts_without_a_blend_join() -> None:
     rest = "{dwell: 60}, {return: 9, over: 180, law: cycloidal}]"
     one, two = (

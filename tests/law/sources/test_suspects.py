@@ -49,7 +49,6 @@ def test_a_wrong_row_is_named_with_what_fits_there(around, total, place):
     }
 
 
-@pytest.mark.thin(2)
 @pytest.mark.parametrize("place", [1, 30, 59])
 def test_so_is_one_of_a_motion_that_rests_at_its_ends(place):
     law = programme([Move(TURN, named("cycloidal"), by=10.0)], TURN, around=None)
@@ -59,7 +58,6 @@ def test_so_is_one_of_a_motion_that_rests_at_its_ends(place):
     assert standing(rows_of(values, closed=True), around=None) == {place + 1: pytest.approx(sound, abs=0.002)}
 
 
-@pytest.mark.thin(2)
 @pytest.mark.parametrize("place", [17, 119])
 def test_rows_that_were_swapped_are_named_together(place):
     values = wave(120)
@@ -68,7 +66,6 @@ def test_rows_that_were_swapped_are_named_together(place):
     assert set(standing(rows_of(values))) == {place + 1, later + 1}
 
 
-@pytest.mark.slow
 def test_a_corner_noise_and_few_rows_name_none():
     lash = np.maximum(wave(120) - 0.3, 0.0)
     scattered = wave(120) + np.round(np.random.default_rng(3).uniform(-0.02, 0.02, 120), 3)

@@ -38,7 +38,6 @@ PLATE = programme(
 )
 
 
-@pytest.mark.thin(2)
 @pytest.mark.parametrize("closing", [False, True])
 def test_angles_may_pass_360_once(closing):
     """Rows from 200 to 358 and on from 0, as a machine counts within the turn, are those from -160 on."""
@@ -90,7 +89,6 @@ def test_the_greatest_distance_from_the_rows_is_told_with_its_line():
     assert motion.kept.remarks == ()
 
 
-@pytest.mark.slow
 def test_dwells_are_level_on_their_inner_part_and_the_acceleration_is_continuous():
     motion = from_table(plate(), 0.0005)
     found = [(math.degrees(rest.begin), math.degrees(rest.end), rest.level) for rest in motion.rests]
@@ -188,7 +186,6 @@ def equally_spaced(s, by=0.0):
     return Samples(np.arange(len(s)) * (TURN / len(s)), np.array(s) + by, np.arange(len(s)) + 1)
 
 
-@pytest.mark.thin(2)
 @pytest.mark.parametrize(
     ("s", "reading", "square", "least"), [(EVERY_10, 0.02, 719.888, 0.02934), (EVERY_15, 0.005, 762.118, 0.010858)]
 )
@@ -204,7 +201,6 @@ def test_a_least_row_beyond_its_reading_of_0_leaves_the_motion_of_least_jerk(s, 
     assert motion.kept.distance == pytest.approx(off(motion, rows).max(), abs=1e-12)
 
 
-@pytest.mark.slow
 @pytest.mark.parametrize("reading", [0.02, pytest.param(0.005, marks=pytest.mark.slow)])
 def test_the_motion_follows_the_level_of_its_rows_without_a_jump(reading):
     """Readings of a least row beyond which other rules begin, and places between: 1e-7 moves no motion by 1e-3."""
@@ -222,7 +218,6 @@ def test_the_motion_follows_the_level_of_its_rows_without_a_jump(reading):
                 assert within <= reading
 
 
-@pytest.mark.slow
 def test_the_lowest_dwell_is_at_0_and_its_rows_are_followed_at_any_level():
     """Rows of a dwell beyond twice their reading from 0 are lowered by their level, nearer ones by less."""
     plain = from_table(plate(), 0.0005).derivatives(plate().theta, 0)[0]
@@ -244,7 +239,6 @@ def test_rows_far_from_0_are_remarked_with_the_level_by_which_they_are_lowered()
     assert (level.range, level.kept.distance) == ((0.0, 0.0), 5.0)
 
 
-@pytest.mark.thin(3)
 @pytest.mark.parametrize("level", [25.0, -25.0, 0.0])
 @pytest.mark.parametrize("around", [1, -1])
 def test_the_distance_of_the_shape_is_that_of_rows_lowered_as_a_whole(level, around):
@@ -330,7 +324,6 @@ def test_a_dwell_at_the_last_level_fills_the_rest_of_a_turn():
     assert math.degrees(motion.rests[-1].end) == pytest.approx(360, abs=1.5)
 
 
-@pytest.mark.slow
 def test_a_sharp_end_of_the_rows_before_a_filled_rest_is_no_row_that_stands_out():
     """The rows that fill the rest have no line; a motion that does not end level has a corner there, and no bad row."""
     theta = np.radians(np.arange(60.0, 181.0, 2.0))
@@ -405,7 +398,7 @@ def test_what_is_no_motion_is_refused_with_its_line(change, line, message):
     assert caught.value.message.startswith(f"line {line}: ")
 
 
-@pytest.mark.thin(4)
+@pytest.mark.thin(2)
 @pytest.mark.parametrize(("unit", "word"), [(1.0, "mm"), (25.4, "in"), (0.0254, "in"), (rad(1), "deg")])
 def test_the_reading_that_is_advised_lets_a_table_close(unit, word):
     rows = broken(climbing)._replace(unit=unit)
@@ -419,7 +412,6 @@ def test_the_reading_that_is_advised_lets_a_table_close(unit, word):
     assert from_table(rows, told, suspect="keep").kept.distance <= told
 
 
-@pytest.mark.slow
 def test_a_row_that_stands_out_is_followed_or_left_out():
     rows, sound = broken(outlier), plate()
     motion = from_table(rows, 0.0005)
@@ -434,7 +426,6 @@ def test_a_row_that_stands_out_is_followed_or_left_out():
     assert dropped.kept.remarks[0].sentence.startswith("line 51: left out, the row stands out")
 
 
-@pytest.mark.slow
 def test_several_rows_that_stand_out_are_all_told():
     rows = broken(outlier)
     rows.s[[250, 200]] = rows.s[[200, 250]]
@@ -447,7 +438,6 @@ def test_several_rows_that_stand_out_are_all_told():
     assert off(from_table(rows, 0.0005, suspect="drop"), plate()).max() <= 0.001
 
 
-@pytest.mark.slow
 def test_rows_that_are_written_twice_and_rows_that_fall_are_the_same_table():
     rows = plate()
     plain = from_table(rows, 0.0005).derivatives(rows.theta, 0)[0]
@@ -467,7 +457,7 @@ def test_a_gap_is_bridged():
 # --- remarks ----------------------------------------------------------------------------------------------------------
 
 
-@pytest.mark.slow
+@pytest.mark.thin(2)
 @pytest.mark.parametrize("readings", [3.0, 30.0])
 def test_noise_beyond_the_digits_is_remarked_with_a_reading_that_calms_it(readings):
     rng = np.random.default_rng(7)
@@ -513,7 +503,6 @@ def test_rows_that_scatter_too_far_to_be_followed_are_refused_with_a_reading_tha
     from_table(rows.part(slice(None, None, 11 if around != 1 else 12)), 0.0005, around=around, suspect="keep")
 
 
-@pytest.mark.slow
 @pytest.mark.usefixtures("short_search")
 def test_rows_about_no_curve_are_refused_and_means_of_them_are_a_motion():
     rows = plate(3000)._replace(s=np.random.default_rng(5).uniform(0, 10, 3000))
@@ -531,7 +520,7 @@ def test_a_distance_of_more_than_a_hundredth_of_the_stroke_is_remarked():
     assert from_table(plate(24, 1), 0.05).kept.remarks == ()
 
 
-@pytest.mark.slow
+@pytest.mark.thin(3)
 @pytest.mark.parametrize(("end", "word"), [(2 * math.pi, "radians"), (1.0, "turns"), (100.0, "percent")])
 def test_angles_that_are_hardly_degrees_are_remarked_with_what_they_may_be(end, word):
     theta = np.radians(np.linspace(0, end, 61))
@@ -540,7 +529,6 @@ def test_angles_that_are_hardly_degrees_are_remarked_with_what_they_may_be(end, 
     assert [f"give angle: {word}" in remark.sentence for remark in names] == [True]
 
 
-@pytest.mark.slow
 def test_angles_over_less_than_a_quarter_of_the_turn_are_remarked():
     theta = np.radians(np.arange(0.0, 73.0, 3.0))
     rows = Samples(theta, np.round(3 - 3 * np.cos(5 * theta), 3), np.arange(25) + 1)
@@ -630,7 +618,7 @@ def wavy(x):
     return 2 + x / 40 + mpmath.mpf("1.5") * mpmath.sin(x / 17)
 
 
-@pytest.mark.slow
+@pytest.mark.thin(3)
 @pytest.mark.parametrize(
     ("law", "total"),
     [
@@ -660,7 +648,6 @@ def test_a_law_over_a_length_is_followed_within_its_digits_to_both_ends(law, tot
     assert (off.max(axis=1) <= [2.0 * reading, 3e-6, 6e-6]).all()
 
 
-@pytest.mark.slow
 def test_dwells_of_a_motion_with_open_ends_are_level():
     """One at its beginning, one within; it ends on a rise, whose velocity is kept."""
     bend = mpmath.mpf("0.0004")
@@ -698,7 +685,7 @@ def test_a_motion_with_open_ends_that_rests_at_both_is_a_law():
     assert np.abs(motion.derivatives(fine, 0)[0] - true).max() <= 2e-4
 
 
-@pytest.mark.slow
+@pytest.mark.thin(3)
 @pytest.mark.parametrize("place", [3, 4, 40, 96, 97])
 def test_a_row_that_is_off_is_named_near_open_ends_too(place):
     rows = sampled(wavy, 100.0, places=4)
@@ -715,7 +702,7 @@ def test_a_row_that_is_off_is_named_near_open_ends_too(place):
     assert np.abs(made.derivatives(x, 0)[0] - sound.derivatives(x, 0)[0]).max() <= 2e-4
 
 
-@pytest.mark.slow
+@pytest.mark.thin(3)
 @pytest.mark.parametrize("step", [1.0, 2.5, 5.0])
 @pytest.mark.parametrize("places", [3, 5])
 def test_no_row_of_a_sound_table_with_open_ends_stands_out(step, places):

@@ -43,7 +43,7 @@ def test_the_corpus_has_every_law_step_unit_and_number_of_decimals():
     assert len({(table.step, table.places) for table in EVERY}) == 36
 
 
-@pytest.mark.thin(16)
+@pytest.mark.thin(4)
 @pytest.mark.parametrize("table", thin(EVERY, DIAGONAL), ids=str)
 def test_a_law_is_followed_within_its_digits(table):
     motion = from_table(table.rows, table.reading).demand_joined()
@@ -59,7 +59,7 @@ def test_a_law_is_followed_within_its_digits(table):
             assert table.greatest(motion)[1] <= (0.1 if table.places == 3 else 0.06)
 
 
-@pytest.mark.slow
+@pytest.mark.thin(4)
 @pytest.mark.parametrize("table", thin(list(tables(UNEVEN, seed=32, uneven=True)), set(range(0, UNEVEN, 30))), ids=str)
 def test_uneven_steps_are_followed(table):
     if table.stroke * 10**table.places >= 4:
@@ -67,7 +67,7 @@ def test_uneven_steps_are_followed(table):
         assert motion.kept.distance <= table.reading
 
 
-@pytest.mark.slow
+@pytest.mark.thin(3)
 @pytest.mark.parametrize("noise", NOISES)
 def test_noise_is_followed_and_remarked_where_it_is_more_than_the_digits(noise):
     rng, remarked = np.random.default_rng(17), []

@@ -86,7 +86,7 @@ def stadium(space: Modelspace, layer: str, order: list[int], backwards: list[boo
 # --- one closed entity, in every version
 
 
-@pytest.mark.thin(4)
+@pytest.mark.thin(2)
 @pytest.mark.parametrize("version", ["R12", "R2000", "R2004", "R2007", "R2010", "R2013", "R2018"])
 @pytest.mark.parametrize("clockwise", [False, True])
 def test_polylines_with_bulges(tmp_path: Path, version: str, clockwise: bool) -> None:
@@ -110,7 +110,6 @@ def test_polylines_with_bulges(tmp_path: Path, version: str, clockwise: bool) ->
     assert drawing.version == document.dxfversion
 
 
-@pytest.mark.thin(2)
 @pytest.mark.parametrize("first", range(4))
 def test_every_start_vertex_gives_the_same_contour(tmp_path: Path, first: int) -> None:
     points, bulges = circle_points()
@@ -160,7 +159,6 @@ def test_what_is_drawn_without_choosing_a_layer_is_cut_too(tmp_path: Path) -> No
     assert hole.area == pytest.approx(25.0 * np.pi)
 
 
-@pytest.mark.thin(2)
 @pytest.mark.parametrize(("side", "expected"), [(1, 1.0), (-1, -1.0)])
 def test_an_extrusion_along_minus_z_mirrors(tmp_path: Path, side: int, expected: float) -> None:
     points = np.array([[0.0, -10.0], [30.0, 0.0], [0.0, 10.0]])
@@ -176,7 +174,6 @@ def test_an_extrusion_along_minus_z_mirrors(tmp_path: Path, side: int, expected:
     np.testing.assert_allclose(contour.support(ANGLES).q, q, atol=1e-12)
 
 
-@pytest.mark.thin(2)
 @pytest.mark.parametrize("extrusion", [(0, 0, 1), (0, 0, -1)])
 def test_ellipses(tmp_path: Path, extrusion: tuple[int, int, int]) -> None:
     document = new()
@@ -216,7 +213,7 @@ def test_rational_and_plain_splines(tmp_path: Path) -> None:
     assert drawing.pieces == 4
 
 
-@pytest.mark.thin(8)
+@pytest.mark.thin(2)
 @pytest.mark.parametrize("degree", [2, 3, 5, 9, 11])
 def test_a_closed_spline_of_one_period(tmp_path: Path, degree: int) -> None:
     """Uniform knots, the first control points repeated at the end: as CAD systems write periodic splines."""
@@ -304,7 +301,6 @@ def test_gaps_that_are_reported_are_closed_at_their_middles(tmp_path: Path) -> N
     assert read_drawing(saved(document, tmp_path), gap=caught.value.closing).widest_gap == pytest.approx(0.003)
 
 
-@pytest.mark.thin(2)
 @pytest.mark.parametrize("outermost", [False, True])
 def test_an_open_chain_within_the_contour_is_left_out(tmp_path: Path, outermost: bool) -> None:
     document = new()
@@ -332,7 +328,7 @@ def test_pieces_no_longer_than_a_gap_are_named(tmp_path: Path) -> None:
     assert (short.kind, short.x, short.y) == ("short", 30.0, 0.0)
 
 
-@pytest.mark.thin(4)
+@pytest.mark.thin(2)
 @pytest.mark.parametrize("side", [1e-3, 1.0, 50.0, 1e6])
 def test_gaps_permitted_by_default_go_with_a_small_drawing(tmp_path: Path, side: float) -> None:
     def square(gap: float) -> Path:
@@ -411,7 +407,6 @@ def test_close_pairs_are_all_pairs_that_are_close(points: list[tuple[int, int]],
 # --- units, header
 
 
-@pytest.mark.thin(2)
 @pytest.mark.parametrize(
     ("units", "mm"),
     [
@@ -431,7 +426,6 @@ def test_header_units(tmp_path: Path, units: int, mm: float) -> None:
     assert tuple(drawing.contour.box) == pytest.approx((-22.0, -26.5, 28.0, 23.5))
 
 
-@pytest.mark.thin(3)
 @pytest.mark.parametrize(
     ("comment", "mm"),
     [
@@ -827,7 +821,6 @@ def test_a_line_without_its_end_is_not_drawn_to_the_origin(sample: Path) -> None
         read_drawing(sample)
 
 
-@pytest.mark.thin(2)
 @pytest.mark.parametrize("note", [False, True])
 def test_a_circle_to_engrave_is_cut_or_engraved_and_not_both(tmp_path: Path, *, note: bool) -> None:
     """Text alone on CUT makes it no layer to cut: all curves are cut then, those on ENGRAVE too."""

@@ -77,7 +77,6 @@ def both(raw: bytes) -> bool:
     return found is not None
 
 
-@pytest.mark.thin(2)
 @pytest.mark.parametrize("ends", [b"\n", b"\r\n"])
 def test_a_plain_file_is_read_as_it_is_whole(ends: bytes) -> None:
     assert both(drawing().replace(b"\n", ends))
@@ -103,7 +102,6 @@ PAST = b"ENTITIES\n  0\n"
 LINE = b"  0\nLINE\n  5\nFF\n330\n17\n100\nAcDbEntity\n  8\n0\n100\nAcDbLine\n 10\n0.0\n 20\n0.0\n 11\n1.0\n 21\n1.0\n"
 
 
-@pytest.mark.thin(3)
 @pytest.mark.parametrize(
     ("old", "new"),
     [
@@ -126,7 +124,6 @@ def test_what_is_not_plain_is_left_to_ezdxf(old: bytes, new: bytes) -> None:
     assert not both(raw[:where] + spaced(raw[where:], old, new))
 
 
-@pytest.mark.thin(2)
 @pytest.mark.parametrize("more", [b" 67\n     1\n", b"102\n{ACAD_XDICTIONARY\n360\nFFF\n102\n}\n", b"310\nabcdef\n"])
 def test_plain_is_what_has_more_than_a_curve_needs(more: bytes) -> None:
     """A flag for paper, which its owner overrules, a dictionary of its own, a picture of itself."""

@@ -2,9 +2,9 @@
 
 import math
 
+import ezdxf
 import numpy as np
 import pytest
-from support.heavy import ezdxf
 
 from kin.read.drawing.dxf_entities import shape_of
 from kin.read.drawing.shapes import UnfitError

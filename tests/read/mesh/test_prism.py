@@ -93,7 +93,6 @@ def failures(path, intent=YOKE, limits=LIMITS):
 # --- rewritten: nothing fails ----------------------------------------------------------------------------------------
 
 
-@pytest.mark.thin(2)
 @pytest.mark.parametrize("name", POINTS)
 def test_own_triangles_are_a_prism_to_the_bit(tmp_path, name):
     path = write_stl(tmp_path / "cam.stl", triangles_of(name))
@@ -103,7 +102,6 @@ def test_own_triangles_are_a_prism_to_the_bit(tmp_path, name):
     assert not failures(path, INTENTS[name])
 
 
-@pytest.mark.thin(2)
 @pytest.mark.parametrize("name", POINTS)
 def test_tilted_in_single_precision_and_back(tmp_path, name):
     triangles = tilted_and_back(triangles_of(name), single)
@@ -119,7 +117,6 @@ def test_tilted_in_single_precision_and_back(tmp_path, name):
     assert not failures(path, INTENTS[name])
 
 
-@pytest.mark.thin(2)
 @pytest.mark.parametrize("middle", [3.0, THICK / 2.0])
 def test_walls_with_corners_halfway_up(tmp_path, middle):
     """As remeshing leaves them, also where the part is cut to see its section."""
@@ -238,7 +235,6 @@ def test_steps_are_left_alone():
 # --- what is counted --------------------------------------------------------------------------------------------------
 
 
-@pytest.mark.slow
 def test_what_was_found_counts_into_every_figure(tmp_path):
     """Six digits move corners by up to 1e-4 mm: the verdict is that of the evened section, and as much worse."""
     path = write_text(tmp_path / "cam.stl", tilted_and_back(triangles_of(), decimals("%.6g")), "%.6g")

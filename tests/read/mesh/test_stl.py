@@ -82,7 +82,6 @@ def test_negative_zero_is_zero(tmp_path: Path) -> None:
     assert solid.prism
 
 
-@pytest.mark.thin(2)
 @pytest.mark.parametrize("scale", [1e-3, 1.0, 1e3])
 def test_parts_made_by_trimesh_and_manifold(tmp_path: Path, scale: float) -> None:
     manifold3d = pytest.importorskip("manifold3d")
@@ -377,7 +376,6 @@ def test_a_missing_file_is_the_file_systems_error(tmp_path: Path) -> None:
         read_solid(tmp_path / "none.stl")
 
 
-@pytest.mark.thin(2)
 @pytest.mark.parametrize("stumps", [False, True])
 def test_lids_without_walls(tmp_path: Path, stumps: bool) -> None:
     """Two lids at their heights, also with walls that end on the way: there is no section at half of the height."""

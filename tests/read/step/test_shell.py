@@ -83,7 +83,6 @@ def refused(folder, text):
     return str(caught.value)
 
 
-@pytest.mark.thin(3)
 @pytest.mark.parametrize("unit", ["mm", "inch"])
 @pytest.mark.parametrize(
     "more", [{}, {"split": False}, {"weights": 1.0}], ids=["split", "whole", "weights of one size"]

@@ -121,7 +121,7 @@ REFUSED = {
 UNIT = "#910=(LENGTH_UNIT()NAMED_UNIT(*)SI_UNIT($,.METRE.));"
 
 
-@pytest.mark.thin(4)
+@pytest.mark.thin(2)
 @kernel
 @pytest.mark.parametrize("name", READ)
 def test_a_placement_is_read_as_the_kernel_does(tmp_path, name):
@@ -184,7 +184,6 @@ def assembly(shape, path):
     assert "ITEM_DEFINED_TRANSFORMATION" in path.read_text()
 
 
-@pytest.mark.slow
 @kernel
 def test_assemblies_written_by_the_kernel(tmp_path):
     single, path = tmp_path / "single.step", tmp_path / "assembly.step"
@@ -209,7 +208,6 @@ def test_assemblies_written_by_the_kernel(tmp_path):
         read_step(path)
 
 
-@pytest.mark.slow
 @kernel
 def test_a_file_that_is_moved_or_turned_does_not_pass(tmp_path):
     recipe = step_recipe("{thickness: 8, bore: 10}")

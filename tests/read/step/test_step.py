@@ -41,7 +41,6 @@ def changed(text, pattern, replacement, count=1):
 # --- sound files ----------------------------------------------------------------------------------------------------
 
 
-@pytest.mark.thin(3)
 @pytest.mark.parametrize("unit", ["mm", "m", "inch"])
 @pytest.mark.parametrize("seam", [True, False])
 def test_round_walls_with_a_seam_or_without_in_any_unit(tmp_path, unit, seam):
@@ -143,7 +142,6 @@ def test_a_file_cut_short(tmp_path, bytes_left):
     assert refused(tmp_path, washer()[:bytes_left]).reason in {"empty", "truncated", "syntax"}
 
 
-@pytest.mark.thin(4)
 @pytest.mark.parametrize(
     ("pattern", "replacement", "reason", "message"),
     [
@@ -216,7 +214,6 @@ def test_faces_that_look_inward(tmp_path):
     assert any("at z = 0 mm looks into the solid" in fault for fault in solid.faults)
 
 
-@pytest.mark.thin(4)
 @pytest.mark.parametrize("part", [washer(), washer(seam=False), stadium(), swept(EGG, None, 5)])
 def test_each_face_that_is_turned_over_is_a_fault(tmp_path, part):
     """Also one that goes all round, whose section is a whole circle either way."""

@@ -21,7 +21,6 @@ def on_contour(degrees: float) -> tuple[float, float]:
     return p * math.cos(angle) - slope * math.sin(angle), p * math.sin(angle) + slope * math.cos(angle)
 
 
-@pytest.mark.thin(2)
 @pytest.mark.parametrize(("per", "share"), [(1, 0.0), (3, 1.0 / 3.0), (6, 0.5)])
 def test_the_nearest_of_the_places_that_are_traced(per: int, share: float, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(Exact, "looks", lambda _files: per)

@@ -61,7 +61,6 @@ def test_a_drawing_has_its_error_ring(tmp_path: Path, outset: float) -> None:
     assert camgeo.verify(camgeo.load(TEXT), path).page is None
 
 
-@pytest.mark.slow
 def test_a_solid_and_a_drawing_each_have_theirs(tmp_path: Path) -> None:
     design = camgeo.design(camgeo.load(TEXT))
     prism = trimesh.creation.extrude_polygon(pytest.importorskip("shapely").Polygon(design.contour(600)), 8.0)

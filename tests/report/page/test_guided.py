@@ -97,7 +97,7 @@ def plotted(found: Content, title: str) -> np.ndarray:
     return plot.series[0].values
 
 
-@pytest.mark.thin(16)
+@pytest.mark.thin(8)
 @BOTH
 @pytest.mark.parametrize("name", ROUND)
 def test_a_centre_stays_its_radius_from_the_cam_and_the_contact_lies_between(name: str, rotation: str) -> None:
@@ -113,7 +113,7 @@ def test_a_centre_stays_its_radius_from_the_cam_and_the_contact_lies_between(nam
     assert (within == (name == "ring")).all()
 
 
-@pytest.mark.thin(12)
+@pytest.mark.thin(6)
 @BOTH
 @pytest.mark.parametrize("name", ROUND)
 def test_the_pressure_angle_is_that_between_the_arrow_and_the_way_of_the_centre(name: str, rotation: str) -> None:
@@ -157,7 +157,7 @@ def test_a_face_is_tangent_to_the_cam_where_it_is_touched(name: str, rotation: s
         assert np.real((seen - point[step]) * np.conj(normal[step])).max() < DRAWN_TO
 
 
-@pytest.mark.thin(8)
+@pytest.mark.thin(4)
 @BOTH
 @pytest.mark.parametrize("name", [name for name in (*ROUND, *FLAT) if "arm" in name])
 def test_an_arm_keeps_its_pivot_and_swings_as_the_motion_says(name: str, rotation: str) -> None:
@@ -194,7 +194,6 @@ def test_an_arm_whose_face_lies_beyond_its_pivot_does_not_cross_the_cam() -> Non
     assert max(shared) < 0.01
 
 
-@pytest.mark.thin(2)
 @BOTH
 def test_both_rollers_of_a_frame_stay_on_the_cam(rotation: str) -> None:
     recipe, found = drawn("yoke", rotation)
@@ -267,7 +266,6 @@ def test_a_sharp_corner_is_no_undercut(rounding: str, note: str) -> None:
     assert ("undercut" in plot.note) == bool(rounding)
 
 
-@pytest.mark.thin(3)
 @pytest.mark.parametrize("name", ["roller", "shoe", "tilted face", "ring", "yoke"])
 def test_a_guide_stands_clear_of_what_it_guides(name: str) -> None:
     _, found = drawn(name, "cw")

@@ -49,7 +49,7 @@ def test_instant_centres_of_a_yoke() -> None:
     assert letters == ["I₁₃ → ∞", "I₁₂", "I₂₃ = Q"]
 
 
-@pytest.mark.slow
+@pytest.mark.thin(4)
 @pytest.mark.parametrize(("name", "count"), [("w-booth", 4), ("w-figure-5", 6), ("w-figure-9", 8), ("w-rosette", 10)])
 def test_chords_of_one_length_close(name: str, count: int) -> None:
     """2 lambda chords of 2 l sin alpha, each beginning where the one before ends; the first is AB (W section 6)."""
@@ -65,7 +65,6 @@ def test_chords_of_one_length_close(name: str, count: int) -> None:
     assert np.abs(origin(chords[0]) - arm) == pytest.approx(arm)  # A is l from the pivot
 
 
-@pytest.mark.thin(2)
 @pytest.mark.parametrize(("name", "arm"), [("w-figure-5", 60.0), ("w-ellipse", 30.0)])
 def test_isoptic_circle_and_pedal(name: str, arm: float) -> None:
     """The faces' corner stays 2 l from O, both touch c*, and the feet of their perpendiculars run on the pedal."""

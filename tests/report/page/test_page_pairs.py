@@ -55,7 +55,6 @@ def test_each_roller_touches_its_own_disc(name):
     assert content.scene.note == "Disc 2 stands in front of disc 1 and is drawn through."
 
 
-@pytest.mark.slow
 def test_two_faces_stand_against_their_discs():
     found = bodies(check_and_show(recipe_of("faces"))[1])
     for step in (0, 130, 500):

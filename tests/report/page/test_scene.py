@@ -22,7 +22,7 @@ KEYED = "cam: {kind: support, p: 25 + 2*cos(3*t)}\npart: {thickness: 8, bore: 12
 UNDERCUT = "cam: {kind: support, p: 10 + 2*cos(3*t)}\npart: {thickness: 5}\n"
 
 
-@pytest.mark.thin(24)
+@pytest.mark.thin(12)
 @pytest.mark.parametrize("path", few(SHIPPED, 3), ids=lambda path: path.stem)
 def test_it_is_plain_data(path: Path) -> None:
     scene = camgeo.design(path).scene()
@@ -54,7 +54,6 @@ def test_openings_have_their_keyway() -> None:
     assert bore.count("L") >= 2
 
 
-@pytest.mark.thin(2)
 @pytest.mark.parametrize("rotation", ["cw", "ccw"])
 def test_marks_lie_on_the_contour_where_checks_fail(rotation: str) -> None:
     design = camgeo.design(camgeo.load(f"{UNDERCUT}rotation: {rotation}\n"))

@@ -91,7 +91,6 @@ def test_a_roller_on_an_eccentric_is_a_four_bar():
     assert got[2] == pytest.approx(rows[2], abs=1e-9)
 
 
-@pytest.mark.thin(2)
 @pytest.mark.parametrize("offset", [0.0, 7.0, -7.0])
 def test_a_translating_roller_on_an_eccentric_is_a_slider_crank(offset):
     """Its travel in closed form, differentiated by Fourier series; and on a polygon, against differences."""
@@ -176,7 +175,6 @@ def test_play_is_what_the_contour_leaves_of_it():
     assert exact.upper.rows(PHI)[0] - exact.lower.rows(PHI)[0] == pytest.approx(2e-5, abs=1e-15)
 
 
-@pytest.mark.thin(2)
 @pytest.mark.parametrize("follower", [followers.flat_pair(PAIR), followers.double_roller(ROLLERS, 8.0)])
 def test_double_followers_are_held_from_below_and_above(follower):
     faces = intended_faces(follower, 1e-3)

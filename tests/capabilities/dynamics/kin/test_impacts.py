@@ -91,7 +91,6 @@ def test_a_train_at_rest_stays_there():
     assert found.turns[0].least == pytest.approx(150.0, rel=1e-12)
 
 
-@pytest.mark.thin(2)
 @pytest.mark.parametrize("rpm", [60.0, 400.0])
 def test_where_contact_holds_the_course_settles_in_the_steady_state(rpm):
     train = Train(0.4, 40.0, 2e5, 150.0)
@@ -127,7 +126,6 @@ def test_no_play_is_refused_with_its_place():
         course(Train(1.0, 1.0, 1e5), drives_, 100.0, 1)
 
 
-@pytest.mark.slow
 def test_a_touch_between_two_samples_is_met():
     """A face that first falls away from the follower, then reaches for it again, within a hundredth of a radian."""
 

@@ -17,7 +17,7 @@ RATIOS = (1.25, 3.3, 10.3, 97.3, 1000.5, 1e4 + 0.3, 1e5 + 0.3)
 DAMPINGS = (0.0, 1e-3, 0.1, 0.7, 1.0 - 1e-12, 1.0, 1.0 + 1e-9, 2.0)
 
 
-@pytest.mark.thin(10)
+@pytest.mark.thin(5)
 @pytest.mark.parametrize("zeta", [*DAMPINGS, 9.0])
 @pytest.mark.parametrize("t", [0.0, 1e-9, 0.01, 1.0, TURN])
 @pytest.mark.parametrize("r", [1e-3, 1.0, 30.5, 1e5])

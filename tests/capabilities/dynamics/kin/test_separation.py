@@ -85,6 +85,7 @@ def test_no_dip_below_the_speed_at_which_float_begins_is_passed_over(ratio, zeta
 
 
 @pytest.mark.slow
+@pytest.mark.thin(2)
 @pytest.mark.parametrize(("ratio", "zeta"), [(1e3 + 0.3, 1e-5), (1e5 + 0.3, 1e-6)])
 def test_a_search_that_takes_too_much_says_between_which_speeds_float_begins(ratio, zeta):
     train = stiff(ratio, zeta, preload=150.0)
@@ -97,7 +98,6 @@ def test_a_search_that_takes_too_much_says_between_which_speeds_float_begins(rat
     assert steady(train, drive, high).force.least < 0.0
 
 
-@pytest.mark.slow
 def test_the_speed_that_floats_is_looked_for_at_resonances_below_it():
     (drive,) = drives([Cycloid(math.radians(120.0), 20e-3)])
     train = stiff(1e5, 1e-8, preload=150.0)
@@ -106,7 +106,7 @@ def test_the_speed_that_floats_is_looked_for_at_resonances_below_it():
     assert high / low < 1.1
 
 
-@pytest.mark.thin(4)
+@pytest.mark.thin(2)
 @pytest.mark.parametrize(("ratio", "zeta"), [(1.3, 1.0), (123.3, 0.03), (1e3 + 0.3, 0.01), (1e5 + 0.3, 0.01)])
 def test_ordinary_and_stiff_trains_are_settled_within_the_budget(ratio, zeta):
     train = stiff(ratio, zeta, preload=150.0)
@@ -118,7 +118,6 @@ def test_ordinary_and_stiff_trains_are_settled_within_the_budget(ratio, zeta):
         assert steady(train, drive, 1.0001 * found.rpm).force.least < 0.0
 
 
-@pytest.mark.thin(2)
 @pytest.mark.parametrize(("ratio", "zeta", "most"), [(60.0, 0.05, 38_000), (25.0, 0.1, 25_000), (55.0, 0.95, 45_000)])
 def test_a_damped_train_takes_few_places(ratio, zeta, most):
     """A bound with each kick's own age, and of the integral of what is left over, proves wide ranges at once.

@@ -16,7 +16,6 @@ from kin.dynamics.events import Work
 from kin.dynamics.separation_bounds import Look
 
 
-@pytest.mark.thin(2)
 @pytest.mark.parametrize(("r", "zeta"), [(30.0, 0.0), (30.0, 0.3), (2.5, 0.3), (1.5, 0.8)])
 def test_what_a_smooth_motion_leaves_of_a_push(r, zeta):
     """q' is the slope of q, and the integral of |g - (q'' + 2 a q' + r^2 q)| keeps below its bound, not far below."""

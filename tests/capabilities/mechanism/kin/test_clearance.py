@@ -65,7 +65,6 @@ def test_disc_turning_about_its_own_centre_costs_no_search():
     assert found.evaluations <= 128
 
 
-@pytest.mark.thin(4)
 @pytest.mark.parametrize(("radius", "least"), [(8.0, -1.0), (7.0, 0.0), (6.999, 0.001)])
 def test_touching_and_overlapping(radius, least):
     found = only(mover("disc", disc(3, 0, radius), Turning(-2.0)), mover("wall", WALL, Still()))
@@ -74,7 +73,6 @@ def test_touching_and_overlapping(radius, least):
     assert found.proved >= found.least - max(1e-3, -0.05 * found.least) - 1e-9
 
 
-@pytest.mark.slow
 def test_bar_turning_past_a_pin():
     bar = box(-2, -2, 40, 2)
     corner = math.hypot(40, 2)
@@ -87,7 +85,6 @@ def test_bar_turning_past_a_pin():
     assert found.collides
 
 
-@pytest.mark.slow
 def test_bars_that_turn_against_each_other():
     """Two crosses of half length 10 at a distance of 19, geared one to one: half a right angle apart they pass."""
 
@@ -107,7 +104,6 @@ def test_bars_that_turn_against_each_other():
     assert clashing.least < -0.4
 
 
-@pytest.mark.slow
 def test_pin_inside_a_hole_keeps_from_its_edge_only():
     plate = mover("plate", box(-20, -20, 20, 20), Still(), [disc(0.3, 0, 2.5)])
     found = only(mover("pin", disc(0, 0, 2), Turning(3.0)), plate)
@@ -126,7 +122,6 @@ def test_thin_rings_that_overlap_are_no_deeper_in_one_another_than_they_are_wide
     assert found.least == pytest.approx(-0.01, abs=1e-3)
 
 
-@pytest.mark.slow
 def test_narrow_window_that_sampling_would_miss():
     """A thin needle meets a pin within less than a hundredth of a degree, midway between two of 3600 samples."""
     centre, thickness, radius = math.radians(123.45), 1e-4, 0.02
