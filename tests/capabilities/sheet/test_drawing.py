@@ -102,22 +102,16 @@ def with_sheet(text: str, options: str) -> str:
 
 # --- pages ------------------------------------------------------------------------------------------------------------
 
-# shipped recipes with each kind of cam, follower, linkage and bore, and the size of their paper
-KINDS = {
-    **dict.fromkeys(("as-figure-1", "as-figure-9-2a", "conjugate-arm", "disc-arm-flat", "disc-kerf"), "A3"),
-    **dict.fromkeys(("groove-arm", "print-arm", "print-groove", "six-bar", "valve-train"), "A3"),
-    **dict.fromkeys(("w-ellipse",), "A3"),
-    **dict.fromkeys(("as-figure-12", "breadth-table", "conjugate-flat", "coupler-curve", "disc-flat"), "A4"),
-    **dict.fromkeys(("disc-knife-edge", "disc-ring", "disc-shoe", "lobe-card", "oscillating-yoke"), "A4"),
-    **dict.fromkeys(("print-constant-diameter", "reuleaux-nine", "slider-crank", "w-booth", "yoke-preload"), "A4"),
-}
 
-
-@pytest.mark.costly("a sheet of each kind of cam")
+@pytest.mark.costly("a sheet of a third of all cams")
 @pytest.mark.thin(90)
 @pytest.mark.parametrize(
     ("path", "paper"),
-    [pytest.param(path, KINDS[path.stem], id=path.stem) for path in SHIPPED if path.stem in KINDS],
+    [
+        pytest.param(path, f"A{3 + number % 2}", id=path.stem)
+        for number, path in enumerate(SHIPPED)
+        if number % 3 == 0  # every third, on either paper
+    ],
 )
 def test_nothing_lies_over_anything_else(path: Path, paper: str, drawn: list[drawing.Pages], tmp_path: Path) -> None:
     text = with_sheet(path.read_text(encoding="utf-8"), f"paper: {paper}, profile: 0.02")
