@@ -3,6 +3,9 @@
 Rows: a test marked `thin(n)` runs on a diagonal of its rows, those whose places in its parameters add up to a multiple
 of n; the others are slow. A table of n cams by n faults so has each fault once, and each cam.
 
+Parts: `-m slow --part 2/3` runs of each table of slow rows one in three, another with `1/3` and `3/3`; all other slow
+tests run in every part. `.ci/run` goes on from part to part with the commits.
+
 Property tests: a run repeats the last one's examples, so that a change is judged by what it changes;
 `HYPOTHESIS_PROFILE=explore` looks for new ones, and what it finds becomes an example of its own. A quick run takes an
 eighth of them; any other, such as `pytest -m slow`, takes all, and every property test counts as slow in it.
@@ -25,7 +28,7 @@ from typing import TYPE_CHECKING
 import mpmath
 import pytest
 from hypothesis import HealthCheck, settings
-from support.cases import FULL, thinned_out
+from support.cases import FULL, left_to_other_parts, thinned_out
 from support.designs import share
 
 if TYPE_CHECKING:
@@ -51,6 +54,10 @@ UNTIMED = settings(deadline=None, suppress_health_check=[HealthCheck.too_slow]) 
 settings.register_profile("quick", UNTIMED, derandomize=True, max_examples=FULL // 8)
 settings.register_profile("repeat", UNTIMED, derandomize=True, max_examples=FULL)
 settings.register_profile("explore", UNTIMED, max_examples=FULL)
+
+
+def pytest_addoption(parser: pytest.Parser) -> None:
+    parser.addoption("--part", metavar="K/N", default="1/1", help="of tables of slow rows, part K of N")
 
 
 @pytest.hookimpl(tryfirst=True)
@@ -90,6 +97,10 @@ def pytest_collection_modifyitems(config: pytest.Config, items: list[pytest.Item
     chance = [item for item in items if full and item.get_closest_marker("hypothesis")]
     for item in [*chance, *thinned_out(items)]:
         item.add_marker(pytest.mark.slow)
+    part, parts = map(int, config.getoption("part").split("/"))
+    if others := set(left_to_other_parts(items, part, parts)):
+        config.hook.pytest_deselected(items=[*others])
+        items[:] = [item for item in items if item not in others]
 
 
 @pytest.hookimpl(optionalhook=True)

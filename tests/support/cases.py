@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from typing import TYPE_CHECKING
+from zlib import crc32
 
 import pytest
 from _pytest.mark import ParameterSet
@@ -13,6 +14,7 @@ if TYPE_CHECKING:
 
 
 FULL = 100  # examples of a property test that names no number, in a full run
+TABLE = 4  # rows of a table that is divided
 
 
 def few(cases: Iterable[object], every: int = 2, *, first: int = 0) -> list[ParameterSet]:
@@ -46,3 +48,18 @@ def thinned_out(items: Iterable[pytest.Item]) -> Iterator[pytest.Item]:
             number = sum(known.setdefault(name, len(known)) for name, known in zip(names, places, strict=True))
             if number % thin.args[0]:
                 yield item
+
+
+def left_to_other_parts(items: Iterable[pytest.Item], part: int, parts: int) -> list[pytest.Item]:
+    """Slow rows that part number `part` of `parts` leaves to the others: every row is in one part, each test in all.
+
+    Tables of fewer rows than TABLE, or than parts, run whole. The rows are dealt out in an order that their names give,
+    so that no part has one value of a parameter alone.
+    """
+    tables: dict[str, list[pytest.Item]] = {}
+    for item in items:
+        if item.get_closest_marker("slow") is not None:
+            tables.setdefault(item.nodeid.split("[")[0], []).append(item)
+    divided = [rows for rows in tables.values() if len(rows) >= max(TABLE, parts)]
+    dealt = [sorted(rows, key=lambda item: crc32(item.nodeid.encode())) for rows in divided]
+    return [item for rows in dealt for number, item in enumerate(rows) if number % parts != part - 1]
