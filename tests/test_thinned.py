@@ -1,4 +1,4 @@
-"""What a quick run takes of a test's rows, each value of each parameter and always the first; and parts of slow runs."""
+"""What a quick run takes of a test's rows, each value of each parameter and the first always; and parts of a slow run."""
 
 from itertools import product
 from types import SimpleNamespace
