@@ -1,4 +1,4 @@
-"""What a quick run takes of a test's rows, each value of each parameter and the first always; and parts of a slow run."""
+"""Rows that a quick run takes of a test: each value of each parameter, always the first; and parts of slow runs."""
 
 from itertools import product
 from types import SimpleNamespace
