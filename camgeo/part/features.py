@@ -34,6 +34,11 @@ def edge_of(values: Iterable[object]) -> float:
     return sum((feature.edge(value) for feature, value in with_records(values) if feature.edge is not None), 0.0)
 
 
+def built(part: Values) -> tuple[Any, ...]:
+    """Values of the features by the keys of `part`, which are without fault, in the order of their names."""
+    return tuple(value for feature in FEATURES if (value := feature.build(part)) is not None)
+
+
 def values_read(part: Values) -> Iterator[object]:
     """Values of the features that make a boss or chamfer edges, from keys of `part` of which faulty ones are missing.
 

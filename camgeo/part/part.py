@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING, Any, TypeVar
 
 from camgeo.common.rounding import NOISE, upward
 from camgeo.part import bore
-from camgeo.part.features import FEATURES, boss_of, edge_of, with_records
+from camgeo.part.features import FEATURES, boss_of, built, edge_of, with_records
 from camgeo.schema.fields import Field, Kind, length, mapping
 from kin.numeric.records import dataclass, replace
 
@@ -147,6 +147,5 @@ def _check_sizes(part: Values, reader: Reader) -> None:
 
 def build_part(values: Values) -> Part:
     """Build the part from values of `part` in which no fault was noted."""
-    features = tuple(value for feature in FEATURES if (value := feature.build(values)) is not None)
     own = {name: values[name] for name in ("thickness", "wall", "outer", "density") if name in values}
-    return Part(features=features, **bore.build_bore(values), **own)
+    return Part(features=built(values), **bore.build_bore(values), **own)

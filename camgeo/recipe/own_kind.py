@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, Any, NamedTuple, TypeVar
 
 from camgeo.part import bore
-from camgeo.part.keyway import FEATURE as KEYWAY
+from camgeo.part.features import built
 from camgeo.part.part import Part
 from camgeo.recipe.document import Document
 from camgeo.recipe.figure_bounds import build_bounds
@@ -100,12 +100,11 @@ def common_values(values: Values, document: Document, reader: Reader) -> dict[st
 
 
 def round_part(part: Values) -> Part:
-    """Part of a cam whose blank is a body of revolution: its length, its bore with a keyway, its wall and density."""
-    keyway = KEYWAY.build(part)
+    """Part of a cam whose blank is a body of revolution: length, wall, density, bore and what is cut beside it."""
     return Part(
         thickness=part["length"],
         wall=part.get("wall"),
         density=part.get("density"),
-        features=() if keyway is None else (keyway,),
+        features=built(part),
         **bore.build_bore(part),
     )
