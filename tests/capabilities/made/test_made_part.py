@@ -218,6 +218,8 @@ def test_points_that_are_not_of_this_cam_are_told_what_they_look_like(wrong, tmp
     ((_, part, surface),) = surfaces(ROLLER)
     alter, words = BAD[wrong]
     file.write_text(table(alter(points(part, surface)), "x,y"))
+    with pytest.raises(camgeo.CallError, match=words):
+        camgeo.verify(recipe, file)
     assert main(["verify", str(recipe), str(file)]) == 2
     (told,) = capsys.readouterr().err.splitlines()
     assert re.search(words, told)
