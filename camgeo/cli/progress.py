@@ -6,6 +6,7 @@ import sys
 import threading
 import time
 
+from camgeo.common.system import uninterrupted
 from camgeo.common.terminal import complain, escaped, whisper
 
 PATIENCE = 1.0  # seconds before progress is shown on a terminal
@@ -34,9 +35,11 @@ class Progress:
         if wait <= 0.0:
             write(stage)
             return
-        self._timer = threading.Timer(wait, write, (stage,))
-        self._timer.daemon = True
-        self._timer.start()
+        with uninterrupted():  # a thread that is half started can be neither waited for nor told from one that is not
+            timer = threading.Timer(wait, write, (stage,))
+            timer.daemon = True
+            timer.start()
+            self._timer = timer
 
     def clear(self) -> None:
         """Stop the timer and erase the stage's line from the terminal."""

@@ -2,6 +2,9 @@
 
 from __future__ import annotations
 
+import os
+import signal
+import threading
 import time
 from typing import TYPE_CHECKING
 
@@ -67,3 +70,18 @@ def test_runs_of_many_angles_say_what_they_do(
     )
     assert main([command, str(recipe), *files]) == 0
     assert "cam: judge" in capsys.readouterr().err
+
+
+def test_an_interrupt_as_the_timer_starts_is_the_run_s_own(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Clearing up after it must not fail: `threading` waits for no thread whose start did not come to its end."""
+    run = Progress("cam")
+    started = threading.Thread.start
+
+    def interrupted(thread: threading.Thread) -> None:
+        os.kill(os.getpid(), signal.SIGINT)
+        started(thread)
+
+    monkeypatch.setattr(threading.Thread, "start", interrupted)
+    with pytest.raises(KeyboardInterrupt):
+        run("fit arcs")
+    run.clear()
