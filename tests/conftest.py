@@ -3,8 +3,8 @@
 Rows: a test marked `thin(n)` runs on a diagonal of its rows, those whose places in its parameters add up to a multiple
 of n; the others are slow. A table of n cams by n faults so has each fault once, and each cam.
 
-Parts: `-m slow --part 2/3` runs of each table of slow rows one in three, another with `1/3` and `3/3`; all other slow
-tests run in every part. `.ci/run` goes on from part to part with the commits.
+Parts: `-m slow --part 2/4` runs a quarter of the slow tests, and of each table of rows another quarter. `.ci/run` runs
+as many parts as there is time for, and begins with another one for each commit.
 
 Property tests: a run repeats the last one's examples, so that a change is judged by what it changes;
 `HYPOTHESIS_PROFILE=explore` looks for new ones, and what it finds becomes an example of its own. A quick run takes an
@@ -57,7 +57,7 @@ settings.register_profile("explore", UNTIMED, max_examples=FULL)
 
 
 def pytest_addoption(parser: pytest.Parser) -> None:
-    parser.addoption("--part", metavar="K/N", default="1/1", help="of tables of slow rows, part K of N")
+    parser.addoption("--part", metavar="K/N", default="1/1", help="of slow tests, part K of N")
 
 
 @pytest.hookimpl(tryfirst=True)

@@ -14,7 +14,6 @@ if TYPE_CHECKING:
 
 
 FULL = 100  # examples of a property test that names no number, in a full run
-TABLE = 4  # rows of a table that is divided
 
 
 def few(cases: Iterable[object], every: int = 2, *, first: int = 0) -> list[ParameterSet]:
@@ -51,15 +50,17 @@ def thinned_out(items: Iterable[pytest.Item]) -> Iterator[pytest.Item]:
 
 
 def left_to_other_parts(items: Iterable[pytest.Item], part: int, parts: int) -> list[pytest.Item]:
-    """Slow rows that part number `part` of `parts` leaves to the others: every row is in one part, each test in all.
+    """Slow tests that part number `part` of `parts` leaves to the others; each is in one part.
 
-    Tables of fewer rows than TABLE, or than parts, run whole. The rows are dealt out in an order that their names give,
-    so that no part has one value of a parameter alone.
+    The rows of a table are dealt out over all parts, in an order that their names give, so that no part has one value of
+    a parameter alone; which part begins is told by the table's name, so that single tests are dealt out too.
     """
     tables: dict[str, list[pytest.Item]] = {}
     for item in items:
         if item.get_closest_marker("slow") is not None:
             tables.setdefault(item.nodeid.split("[")[0], []).append(item)
-    divided = [rows for rows in tables.values() if len(rows) >= max(TABLE, parts)]
-    dealt = [sorted(rows, key=lambda item: crc32(item.nodeid.encode())) for rows in divided]
-    return [item for rows in dealt for number, item in enumerate(rows) if number % parts != part - 1]
+    left = []
+    for name, rows in tables.items():
+        dealt = enumerate(sorted(rows, key=lambda item: crc32(item.nodeid.encode())), start=crc32(name.encode()))
+        left += [item for number, item in dealt if number % parts != part - 1]
+    return left
