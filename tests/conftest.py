@@ -3,8 +3,8 @@
 Rows: a test marked `thin(n)` runs on a diagonal of its rows, those whose places in its parameters add up to a multiple
 of n; the others are slow. A table of n cams by n faults so has each fault once, and each cam.
 
-Parts: `-m slow --part 2/4` runs a quarter of the slow tests, and of each table of rows another quarter. `.ci/run` runs
-as many parts as there is time for, and begins with another one for each commit.
+Parts: `-m slow --part 2/8` runs an eighth of the slow tests, and an eighth of the rows of each long table. `.ci/run`
+runs as many parts as there is time for, and begins with another one for each commit.
 
 Property tests: a run repeats the last one's examples, so that a change is judged by what it changes;
 `HYPOTHESIS_PROFILE=explore` looks for new ones, and what it finds becomes an example of its own. A quick run takes an
