@@ -442,7 +442,7 @@ def _verify(arguments: argparse.Namespace) -> int:
         for folder in dict.fromkeys(path.parent for path in paths):
             _tell_of_mixture(report, mixtures(folder, [path.name for path in paths if path.parent == folder]))
     except UnitsError as error:
-        _complain(f"{error}; leave --units out")
+        _complain(f"{error}; leave --units out, or save the file with its right unit")
         return WRONG
     if arguments.json:
         say_json(as_json(report))

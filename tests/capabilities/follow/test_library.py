@@ -145,7 +145,7 @@ def test_positions_at_two_levels_are_no_dwell_between_them() -> None:
 
 
 def test_a_dwell_begins_within_the_turn() -> None:
-    """A parabola ends at 2.5 degrees in a rest of 60: what is within the reading begins before 0, the dwell after it."""
+    """A parabola ends at 2.5 degrees in a rest: what is within the reading begins before 0, the dwell after it."""
     degrees = np.arange(720) / 2.0
     before = np.mod(2.5 - degrees, 360.0)  # before the rest, degrees
     position = np.where(before > 300.0, 0.0, 0.002 * np.minimum(before, 300.0 - before) ** 2)
@@ -429,8 +429,9 @@ def test_as_json(drawings: dict[str, Path], capsys) -> None:
         ({"roller": 3.0, "reading": 0.0}, "a reading is a length above 0"),
         ({"roller": 3.0, "steps": 3}, "a turn is looked at in 36 to 100000 steps"),
         ({"roller": 3.0, "at": (1e5, 0.0)}, "no closed contour goes round the shaft at 100000, 0 mm; give at"),
-        ({"roller": 3.0, "units": "inch"}, "the file states its unit itself: leave units out"),
+        ({"roller": 3.0, "units": "inch"}, "states its unit itself: leave units out, or save the file with"),
         ({"roller": 3.0, "arm": (80.0, 20.0)}, "the roller does not touch the contour at"),
+        ({"roller": 3.0, "offset": 200.0}, " degrees; give the machine's offset or arm, and its shaft by at"),
     ],
 )
 def test_what_makes_no_sense_is_refused(drawings: dict[str, Path], call: dict[str, Any], message: str) -> None:
