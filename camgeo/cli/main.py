@@ -95,7 +95,10 @@ def _arguments(words: Sequence[str]) -> argparse.Namespace:
             parser = _parser(words)
             if not words:
                 parser.error("name a command: camgeo --help lists them, camgeo new the recipes to start from")
-            return parser.parse_args(words)
+            arguments, others = parser.parse_known_args(words)
+            if others:  # argparse would show how camgeo is used, not the command
+                arguments.refuse(f"unrecognized arguments: {' '.join(others)}")
+            return arguments
     except SystemExit:
         for text, write in ((answer.getvalue(), say), (complaint.getvalue(), complain)):
             if text:
@@ -123,7 +126,7 @@ def _parser(words: Sequence[str]) -> argparse.ArgumentParser:
 
     def command(name: str, run: Callable[[argparse.Namespace], int], text: str) -> argparse.ArgumentParser:
         added = commands.add_parser(name, help=text, description=text, formatter_class=help_form)
-        added.set_defaults(run=run)
+        added.set_defaults(run=run, refuse=added.error)
         return added
 
     def add_module_command(name: str, text: str, module_name: str) -> None:
@@ -132,7 +135,7 @@ def _parser(words: Sequence[str]) -> argparse.ArgumentParser:
         if name in words:
             module = import_module(module_name)
             module.add_arguments(added)
-            added.set_defaults(run=module.run)
+            added.set_defaults(run=module.run, refuse=added.error)
 
     export = command("export", _export, "Write a recipe's files and judge them from what lies on disk.")
     _add_recipes(export)
@@ -314,7 +317,8 @@ def _demand_listed(recipe: Order, only: Sequence[str]) -> None:
     """Raise RecipeErrors, at `export.files`, for kinds in `only` of which the recipe lists no file."""
     listed = {request.kind for request in recipe.export.files}
     if missing := [kind for kind in dict.fromkeys(only) if kind not in listed]:
-        raise recipe.error("export.files", f"lists no {' or '.join(missing)}, which --only requests")
+        problem = f"lists no {' or '.join(missing)}, which --only requests"
+        raise recipe.error("export.files", problem, None, f"add {' and '.join(missing)}")
 
 
 def _with_tolerance(recipe: O, tolerance: str | None) -> O:
@@ -438,7 +442,7 @@ def _verify(arguments: argparse.Namespace) -> int:
         for folder in dict.fromkeys(path.parent for path in paths):
             _tell_of_mixture(report, mixtures(folder, [path.name for path in paths if path.parent == folder]))
     except UnitsError as error:
-        _complain(f"{error}; leave --units out")
+        _complain(f"{error}; leave --units out, or save the file with its right unit")
         return WRONG
     if arguments.json:
         say_json(as_json(report))

@@ -33,7 +33,7 @@ LEAP = 1e-9  # rad, on either side of an angle at which the contact may leap
 
 
 class MeasuredDwell(NamedTuple):
-    """A stretch without motion: shaft angles from `begin` to `end`, rad, end > begin; level and flatness, mm or rad."""
+    """A stretch without motion: shaft angles from `begin`, 0 to 2 pi, to `end`, rad; level and flatness, mm or rad."""
 
     begin: float
     end: float
@@ -101,9 +101,9 @@ class MeasuredMotion:
             low, high = int(inner[0]), int(inner[-1])
             if (high - low) * step < LEAST_DWELL:
                 continue
-            begin = start % n
+            begin = (start + low) % n
             flatness = float(np.ptp(resting[low : high + 1]))
-            dwells.append(MeasuredDwell((begin + low) * step, (begin + high) * step, level, flatness))
+            dwells.append(MeasuredDwell(begin * step, (begin + high - low) * step, level, flatness))
 
 
 def measured(

@@ -69,6 +69,7 @@ def units_check(stated: float | None, units: float | None, unit: float, size: Ca
         large = size()
         if abs(large * unit / stated - 1.0) > SIZE_SHARE or abs(large - 1.0) <= SIZE_SHARE:
             return Check("units", True, 0.0, UNITS_SHARE, "", detail=f"a drawing unit is {stated:.9g} mm, as stated")
+        detail += ", as the size has it: save the file with its right unit"
     return Check("units", off <= UNITS_SHARE, off, UNITS_SHARE, "", detail=detail)
 
 

@@ -101,10 +101,10 @@ def counter_clockwise(contour: Contour) -> Contour:
     return contour if contour.area >= 0.0 else contour.reversed()
 
 
-def met(place: tuple[float, float], path: Path) -> ReadError:
-    """Return the error for contours that meet at a place, mm."""
-    x, y = place
-    return ReadError("crossing", f"two closed contours cross or touch at {place_text(x, y, digits=9)}", path, place)
+def met(place: tuple[float, float], path: Path, remedy: str = "") -> ReadError:
+    """Return the error for contours that meet at a place, mm, with a remedy behind it."""
+    told = f"two closed contours cross or touch at {place_text(*place, digits=9)}{remedy}"
+    return ReadError("crossing", told, path, place)
 
 
 def nested(contours: list[Contour], path: Path, deepest: int = 1) -> list[NestingPlace]:

@@ -56,13 +56,13 @@ def test_a_kind_that_no_file_has_is_in_the_json(capsys: pytest.CaptureFixture[st
     said = capsys.readouterr()
     (found,) = json.loads(said.out)
     assert found["errors"][0]["problem"] == "lists no stl, which --only requests"
-    assert said.err == "sound.yaml:2:34: export.files: lists no stl, which --only requests\n"
+    assert said.err == "sound.yaml:2:34: export.files: lists no stl, which --only requests; add stl\n"
 
 
 @pytest.mark.usefixtures("recipes")
 def test_each_kind_of_a_call_is_one_that_the_recipe_lists(capsys: pytest.CaptureFixture[str]) -> None:
     assert main(["export", "--only", "dxf", "--only", "stl", "sound.yaml"]) == 2
-    assert capsys.readouterr().err == "sound.yaml:2:34: export.files: lists no stl, which --only requests\n"
+    assert capsys.readouterr().err == "sound.yaml:2:34: export.files: lists no stl, which --only requests; add stl\n"
 
 
 @pytest.mark.parametrize("repeats", [False, True])

@@ -113,7 +113,8 @@ def test_nothing_that_a_terminal_obeys(text: str, shown: str) -> None:
 def test_what_a_call_says_reaches_the_terminal_escaped() -> None:
     done = run("check", "none", "--\x1b[31mred")
     assert (done.returncode, done.stdout) == (2, b"")
-    assert done.stderr.endswith(b"error: unrecognized arguments: --\\x1b[31mred\n")
+    assert done.stderr.startswith(b"usage: camgeo check ")
+    assert done.stderr.endswith(b"camgeo check: error: unrecognized arguments: --\\x1b[31mred\n")
 
 
 def test_json_stays_json_where_it_is_escaped(monkeypatch: pytest.MonkeyPatch) -> None:

@@ -75,7 +75,10 @@ def test_a_drawing_that_is_converted(exported, capsys):
     wrong = saved_anew(exported, unit=1, version="R2010", name="wrong.dxf")
     capsys.readouterr()
     assert verified(exported, wrong) == 1
-    assert "units (wrong.dxf): 24.4, at most 1e-09 allowed: a drawing unit is 25.4 mm" in capsys.readouterr().out
+    told = "a drawing unit is 25.4 mm, 1 mm is expected, as the size has it: save the file with its right unit\n"
+    assert f"units (wrong.dxf): 24.4, at most 1e-09 allowed: {told}" in capsys.readouterr().out
+    saved_anew(exported, unit=4, version="R2010", name="wrong.dxf")
+    assert verified(exported, wrong) == 0
 
 
 @pytest.mark.thin(2)
@@ -88,7 +91,7 @@ def test_a_unit_that_is_given_beside_another_that_is_stated(exported, capsys, na
     assert said.out == ""
     assert said.err.count("\n") == 1
     assert "the file states its unit, 1 mm; 25.4 mm is given" in said.err
-    assert "leave --units out" in said.err
+    assert "leave --units out, or save the file with its right unit\n" in said.err
 
 
 def test_a_mesh_in_inches(exported):

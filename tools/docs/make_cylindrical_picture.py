@@ -23,6 +23,7 @@ DOCS = Path(__file__).parents[2] / "docs"
 NAME = "cylindrical-walls"
 WRONG = Look("link", "", opacity=0.6)
 WIDE, HIGH = 760.0, 430.0
+TYPE = 24.0  # px: at 390 px, half the width of the picture, words are 11 px high
 
 
 def figures() -> dict[str, str]:
@@ -65,13 +66,13 @@ def figures() -> dict[str, str]:
     panel.line([(0.0, bottom), (0.0, recipe.radius + 3.0)], CONSTRUCTION)
     for radius, text in ((recipe.radius, f"{recipe.radius:g}"), (recipe.roller.inner, f"{recipe.roller.inner:g}")):
         panel.line([(-reach, radius), (reach, radius)], CONSTRUCTION)
-        panel.letter((-reach, radius), text, (-18.0, 0.0), 13.0)
+        panel.letter((-reach, radius), text, (-24.0, 0.0), TYPE)
     inner = float(np.interp(recipe.roller.inner, r, high))
     panel.arrow((high[-1], recipe.roller.inner - 1.2), (inner, recipe.roller.inner - 1.2), INK, both=True)
-    panel.letter((inner, recipe.roller.inner - 1.2), f"{inner - high[-1]:.2f} mm", (38.0, 0.0), 13.0)
-    panel.letter((0.0, recipe.radius + 3.0), "roller's axis", (0.0, 12.0), 13.0)
-    sheet.write(0.5 * WIDE, HIGH - 14.0, "along the drum's axis; upward is outward", size=13.0)
-    panel.letter((0.0, 0.5 * (recipe.floor + recipe.radius)), "groove", (0.0, 0.0), 14.0)
+    panel.letter((high[-1], recipe.roller.inner - 1.5), f"{inner - high[-1]:.2f} mm", (-56.0, 0.0), TYPE)
+    panel.letter((0.0, recipe.radius + 3.0), "roller's axis", (0.0, 16.0), TYPE)
+    sheet.write(0.5 * WIDE, HIGH - 14.0, "along the drum's axis; upward is outward", size=TYPE)
+    panel.letter((0.0, 0.5 * (recipe.floor + recipe.radius)), "groove", (0.0, 0.0), TYPE)
     panel.line([(-reach, bottom), (reach, bottom)], QUIET)
     return {NAME: sheet.text()}
 

@@ -85,7 +85,8 @@ def _follow(arguments: argparse.Namespace) -> Drawn:
     _demand_solid(path)
     record = format_of(path)
     if record.units and arguments.units is not None:
-        raise CallError(f"{escaped(str(path))}: the file states its unit itself: leave units out")
+        remedy = "leave units out, or save the file with its right unit"
+        raise CallError(f"{escaped(str(path))}: the file states its unit itself: {remedy}")
     if len(arguments.at) != ACROSS:
         raise CallError("at is the place of the drum's axis in the file: two lengths in mm")
     for name, choices in (("axis", ("x", "y", "z")), ("flank", FLANKS)):

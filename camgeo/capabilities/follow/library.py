@@ -175,7 +175,8 @@ def follow(
     try:
         motion = measured(outline.contour, follower.contacts, count, follower.side, outline.outer)
     except ContactError as error:
-        raise CallError(f"{escaped(str(path))}: {error}") from error
+        remedy = "give the machine's offset or arm, and its shaft by at"
+        raise CallError(f"{escaped(str(path))}: {error}; {remedy}") from error
     _require_on_face(escaped(str(path)), motion, width)
     _require_groove(escaped(str(path)), motion, follower)
     return Followed(path, follower, rotation, (place[0], place[1]), unit, level, asked, outline, motion)

@@ -327,7 +327,8 @@ def _unchosen(path: Path, bodies: Sequence[SeparateBody], mm: float, remedy: str
 def _require_same_unit(path: Path, units: float | None, stated: float | None) -> None:
     """Raise CallError where a call gives a unit other than the `stated` one of the file, or any where that is None."""
     if units is not None and units != stated:
-        raise CallError(f"{escaped(str(path))}: the file states its unit itself: leave units out")
+        remedy = "leave units out, or save the file with its right unit"
+        raise CallError(f"{escaped(str(path))}: the file states its unit itself: {remedy}")
 
 
 def _remedy(chains: Sequence[ClosedContour]) -> str:

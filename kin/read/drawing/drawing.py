@@ -51,6 +51,7 @@ ENGRAVED = "ENGRAVE"
 WIDER = 1.0 + 1e-9
 # Layers that are never cut: our own reference geometry and cutter's path, and AutoCAD's definition points.
 REFERENCE = frozenset({"REFERENCE", "TOOLPATH", "DEFPOINTS"})
+ASIDE = ": delete what is no part of the cam, such as its base circle, or put it on a layer REFERENCE"
 
 
 class Fault(NamedTuple):
@@ -173,7 +174,7 @@ def drawing_of(
     chained, openings = chain_most(pieces.take(keep), run[keep], (near, partial(rounded, curves, scale)), path, bridged)
     meeting = first_meeting([c.contour for c in chained])
     if meeting:
-        raise met(meeting, path)
+        raise met(meeting, path, ASIDE)
     order = nested([c.contour for c in chained], path, options.deepest)
     outer = chained[order[0].number]
     return Drawing(

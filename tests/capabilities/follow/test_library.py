@@ -144,6 +144,19 @@ def test_positions_at_two_levels_are_no_dwell_between_them() -> None:
     assert all(dwell.flatness <= 0.02 for dwell in dwells)
 
 
+def test_a_dwell_begins_within_the_turn() -> None:
+    """A parabola ends at 2.5 degrees in a rest: what is within the reading begins before 0, the dwell after it."""
+    degrees = np.arange(720) / 2.0
+    before = np.mod(2.5 - degrees, 360.0)  # before the rest, degrees
+    position = np.where(before > 300.0, 0.0, 0.002 * np.minimum(before, 300.0 - before) ** 2)
+    phi = np.radians(degrees)
+    rows = np.stack([position, 0.0 * phi, 0.0 * phi])
+    motion = MeasuredMotion("mm", phi, rows, 0.0 * phi, 0.0 * phi, (0.0, 0.0), (45.0, 0.0))
+    (dwell,) = motion.dwells(0.01)
+    assert math.degrees(dwell.begin) == pytest.approx(1.0, abs=0.1)
+    assert math.degrees(dwell.end) == pytest.approx(64.0, abs=0.1)
+
+
 def test_a_polygon_of_few_points_comes_near_its_law(tmp_path: Path) -> None:
     """Chords of 240 points of a roller's cam lie within it: the follower stands up to 0.0074 mm low, never high."""
     recipe = camgeo.load(RECIPES / "disc-roller.yaml")
@@ -416,8 +429,9 @@ def test_as_json(drawings: dict[str, Path], capsys) -> None:
         ({"roller": 3.0, "reading": 0.0}, "a reading is a length above 0"),
         ({"roller": 3.0, "steps": 3}, "a turn is looked at in 36 to 100000 steps"),
         ({"roller": 3.0, "at": (1e5, 0.0)}, "no closed contour goes round the shaft at 100000, 0 mm; give at"),
-        ({"roller": 3.0, "units": "inch"}, "the file states its unit itself: leave units out"),
+        ({"roller": 3.0, "units": "inch"}, "states its unit itself: leave units out, or save the file with"),
         ({"roller": 3.0, "arm": (80.0, 20.0)}, "the roller does not touch the contour at"),
+        ({"roller": 3.0, "offset": 200.0}, " degrees; give the machine's offset or arm, and its shaft by at"),
     ],
 )
 def test_what_makes_no_sense_is_refused(drawings: dict[str, Path], call: dict[str, Any], message: str) -> None:

@@ -624,6 +624,27 @@ def test_what_is_no_contour_is_refused(
     assert error.path == tmp_path / "cam.dxf"
 
 
+@pytest.mark.parametrize("remedy", ["delete", "REFERENCE"])
+def test_a_base_circle_on_the_cams_layer_is_refused_with_its_remedies(tmp_path: Path, remedy: str) -> None:
+    def draw(document: Document) -> None:
+        document.modelspace().add_circle((5, 0), 30.0)
+        document.modelspace().add_circle((0, 0), 25.0)
+
+    error = refused(tmp_path, draw)
+    assert error.message == (
+        "two closed contours cross or touch at (-25, 0): "
+        "delete what is no part of the cam, such as its base circle, or put it on a layer REFERENCE"
+    )
+    document = new()
+    draw(document)
+    base = document.modelspace()[1]
+    if remedy == "delete":
+        document.modelspace().delete_entity(base)
+    else:
+        base.dxf.layer = remedy
+    assert read_drawing(saved(document, tmp_path)).contour.area == pytest.approx(np.pi * 30.0**2)
+
+
 def test_lines_off_the_plane(tmp_path: Path) -> None:
     def draw(document: Document) -> None:
         for a, b in (((0, 0, 0), (1, 0, 0)), ((1, 0, 0), (1, 1, 0.5)), ((1, 1, 0.5), (0, 0, 0))):
