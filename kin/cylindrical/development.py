@@ -15,20 +15,22 @@ import numpy as np
 from kin.cylindrical.crossings import Crossings
 from kin.cylindrical.gauge import gauges_of
 from kin.cylindrical.lifts import Lifts
-from kin.cylindrical.verdict import FlankVerdict, MotionError
+from kin.law.motion_error import MotionError
 from kin.numeric.angles import TURN
 from kin.numeric.arrays import runs_of
 from kin.numeric.check import ROUNDING, Check, at_most, failed
 from kin.numeric.lengths import UNIT, length_words
 from kin.numeric.limits import limit_of
 from kin.numeric.records import replace
+from kin.turned.verdict import CONTOUR, MOTION, FlankVerdict
 
 if TYPE_CHECKING:
-    from kin.cylindrical.intent import Developed, DrumIntent, Limits
+    from kin.cylindrical.intent import DrumIntent
     from kin.cylindrical.roller import Gauge
     from kin.numeric.arrays import Array
+    from kin.numeric.limits import Limits
+    from kin.turned.files import Developed
 
-CONTOUR, MOTION = "contour", "motion"
 FINE = 0.05  # of the tolerance, within which what lies between points is known
 MOST = 400_000  # points of a line
 GAP = 1e-6  # of the radius: ends of lines that are so close meet

@@ -18,11 +18,11 @@ from kin.numeric.records import dataclass
 from kin.turned.guide import Slide, Swing
 
 if TYPE_CHECKING:
-    from kin.law.contacts import Side
+    from kin.law.contacts import Side, Unit
     from kin.law.piecewise import Piecewise
     from kin.numeric.arrays import Array
     from kin.numeric.elementary import Jet
-    from kin.turned.guide import Guide, Unit
+    from kin.turned.guide import Guide
 
     Number = float | Array | Jet
 

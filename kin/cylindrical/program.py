@@ -16,29 +16,31 @@ import numpy as np
 
 from kin.cylindrical.gauge import gauges_of
 from kin.cylindrical.intent import Groove
-from kin.cylindrical.judge import CONTOUR, Judged, assured, motion_check
-from kin.cylindrical.verdict import DrumVerdict, FlankVerdict, MotionError
-from kin.numeric.check import ROUNDING, Check, about, at_most, failed
+from kin.cylindrical.judge import Judged, assured, motion_check
+from kin.law.motion_error import MotionError
+from kin.numeric.check import ROUNDING, Check, at_most, failed
 from kin.numeric.errors import UnsettledError
 from kin.numeric.lengths import UNIT, length_words
 from kin.numeric.records import replace
-from kin.read.checks import count_check, unread_check
+from kin.read.checks import count_check
 from kin.read.errors import ReadError
 from kin.turned.checks import Work, astray, cleared_check, cutter_check, depth_check, feed_check, rapid_check
 from kin.turned.cutters import END, finest_on, left_on
 from kin.turned.moves import passes_of, read_turned
+from kin.turned.verdict import CONTOUR, FlankVerdict, TurnedVerdict
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
     from pathlib import Path
 
-    from kin.cylindrical.intent import DrumIntent, Limits
+    from kin.cylindrical.intent import DrumIntent
     from kin.cylindrical.lifts import Lifts
     from kin.cylindrical.roller import Gauge
+    from kin.law.contacts import Unit
     from kin.numeric.arrays import Array, Indices
+    from kin.numeric.limits import Limits
     from kin.turned.checks import Cutting
     from kin.turned.cutters import Left
-    from kin.turned.guide import Unit
     from kin.turned.moves import Pass, TurnedProgram
 
 SAME = 1e-9  # mm: sizes that differ by less are one
@@ -61,18 +63,17 @@ class _Path(NamedTuple):
     remainder: float = 0.0
 
 
-def verify_program(path: Path, drum: DrumIntent, cutting: Cutting, limits: Limits) -> DrumVerdict:
+def verify_program(path: Path, drum: DrumIntent, cutting: Cutting, limits: Limits) -> TurnedVerdict:
     """Judge a program by what its cutter leaves; raises OSError where the disk refuses."""
     try:
         program = read_turned(path)
     except ReadError as error:
-        return DrumVerdict("gcode", (about(unread_check("program", error), path.name),))
+        return TurnedVerdict.unread(path, "gcode", "program", error)
     if drum.mirrored:
         program = replace(program, moves=tuple(move.mirrored() for move in program.moves))
     passes = list(passes_of(program.moves, drum.radius))
     checks, flanks = judged_passes(program, passes, drum, cutting, limits)
-    told = tuple(about(check, path.name) for check in checks)
-    return DrumVerdict("gcode", told, tuple(flanks), units=program.units_mm)
+    return TurnedVerdict("gcode", tuple(checks), tuple(flanks), units=program.units_mm).about(path)
 
 
 def judged_passes(

@@ -16,18 +16,21 @@ import numpy as np
 from kin.indexing.holding import by_error
 from kin.indexing.intent import SIDES
 from kin.indexing.rollers import REACH, Rollers
-from kin.indexing.verdict import CONTOUR, MOTION, FlankVerdict, MotionError
 from kin.indexing.volume import swept_stretches
+from kin.law.motion_error import MotionError
 from kin.numeric.angles import TURN, degrees
 from kin.numeric.arrays import runs_of
 from kin.numeric.check import ROUNDING, Check, at_most, failed
 from kin.numeric.lengths import UNIT, length_words
 from kin.numeric.limits import limit_of
 from kin.numeric.records import dataclass, replace
+from kin.turned.verdict import CONTOUR, MOTION, FlankVerdict
 
 if TYPE_CHECKING:
-    from kin.indexing.intent import Developed, IndexIntent, Limits
+    from kin.indexing.intent import IndexIntent
     from kin.numeric.arrays import Array, Mask
+    from kin.numeric.limits import Limits
+    from kin.turned.files import Developed
 
 FINE = 0.05  # of the tolerance, within which what lies between points is known
 MOST = 200_000  # points of a line
@@ -86,7 +89,9 @@ def judged_line(
     errors = np.degrees(found.errors)
     k = int(np.abs(errors).argmax())
     sizes = float(np.abs(errors[k])), degrees(float(found.angles[k])), math.degrees(found.room)
-    motion = MotionError(*sizes, float(errors.min()), float(errors.max()), float(np.sqrt(np.mean(errors**2))))
+    motion = MotionError(
+        *sizes, float(errors.min()), float(errors.max()), float(np.sqrt(np.mean(errors**2))), "deg", "sampled"
+    )
     given = None if limits.motion is None else math.degrees(limits.motion)
     cost = math.degrees(found.cost)
     limit, room = limit_of(lambda e: e * cost, given, limits.tolerance, slack)

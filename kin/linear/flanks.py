@@ -8,9 +8,9 @@ from typing import TYPE_CHECKING, NamedTuple
 import numpy as np
 
 from kin.contour.arcs import Arcs
+from kin.law.motion_error import MotionError, Play
 from kin.linear.contact import Held
 from kin.linear.motion import errors, intended
-from kin.linear.verdict import MotionError, Play
 from kin.numeric.records import replace
 
 if TYPE_CHECKING:

@@ -52,8 +52,8 @@ def thinned_out(items: Iterable[pytest.Item]) -> Iterator[pytest.Item]:
 def left_to_other_parts(items: Iterable[pytest.Item], part: int, parts: int) -> list[pytest.Item]:
     """Slow tests that part number `part` of `parts` leaves to the others; each is in one part.
 
-    The rows of a table are dealt out over all parts, in an order that their names give, so that no part has one value of
-    a parameter alone; which part begins is told by the table's name, so that single tests are dealt out too.
+    The rows of a table are dealt out over all parts, in an order that their names give, so that no part has one value
+    of a parameter alone; which part begins is told by the table's name, so that single tests are dealt out too.
     """
     tables: dict[str, list[pytest.Item]] = {}
     for item in items:

@@ -25,8 +25,8 @@ if TYPE_CHECKING:
     from kin.cylindrical.unknown import Drum
     from kin.follower.measured import MeasuredDwell
     from kin.follower.recognised import Programme
+    from kin.law.contacts import Unit
     from kin.numeric.arrays import Array
-    from kin.turned.guide import Unit
 
 Flank = Literal["lower", "upper", "middle"]
 

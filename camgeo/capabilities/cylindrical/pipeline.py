@@ -12,7 +12,8 @@ from camgeo.capabilities.cylindrical.figures import figures_of
 from camgeo.capabilities.cylindrical.making import foresee, make
 from camgeo.capabilities.cylindrical.section import drum_section
 from camgeo.capabilities.cylindrical.solid import drum_mesh
-from camgeo.capabilities.cylindrical.verdicts import file_rows, judged_file
+from camgeo.capabilities.cylindrical.verdicts import judged_file
+from camgeo.measures.flanks import turned_rows
 from camgeo.measures.units import UNIT_NAMES, report_unit
 from camgeo.output.extension import numbers_of
 from camgeo.output.own_kind import OwnKind, Told
@@ -30,9 +31,9 @@ if TYPE_CHECKING:
     from camgeo.measures.placed import Figure
     from camgeo.output.own_kind import Made, Page
     from camgeo.report.page.scene import Scene
-    from kin.cylindrical.verdict import DrumVerdict
     from kin.numeric.arrays import Array
     from kin.numeric.check import Check
+    from kin.turned.verdict import TurnedVerdict
 
 
 def _examined(design: DrumDesign, _: Clock) -> tuple[list[Check], tuple[Figure, ...]]:
@@ -49,11 +50,11 @@ def _section(design: DrumDesign, figures: Sequence[Figure]) -> dict[str, Any]:
     return {"drum": drum_section(design, figures)}
 
 
-def _rows(design: DrumDesign, verdict: DrumVerdict) -> dict[str, Any]:
-    return file_rows(design.recipe, verdict)
+def _rows(design: DrumDesign, verdict: TurnedVerdict) -> dict[str, Any]:
+    return turned_rows(design.recipe, verdict)
 
 
-def _maker(design: DrumDesign, clock: Clock) -> Callable[[FileRequest, Path], Made[DrumVerdict]]:
+def _maker(design: DrumDesign, clock: Clock) -> Callable[[FileRequest, Path], Made[TurnedVerdict]]:
     return partial(make, design, clock)
 
 

@@ -12,7 +12,8 @@ from camgeo.capabilities.indexing.figures import figures_of
 from camgeo.capabilities.indexing.making import foresee, make
 from camgeo.capabilities.indexing.section import index_section
 from camgeo.capabilities.indexing.solid import index_mesh
-from camgeo.capabilities.indexing.verdicts import file_rows, judged_file
+from camgeo.capabilities.indexing.verdicts import judged_file
+from camgeo.measures.flanks import turned_rows
 from camgeo.measures.units import UNIT_NAMES, report_unit
 from camgeo.output.extension import numbers_of
 from camgeo.output.own_kind import OwnKind, Told
@@ -30,9 +31,9 @@ if TYPE_CHECKING:
     from camgeo.measures.placed import Figure
     from camgeo.output.own_kind import Made, Page
     from camgeo.report.page.scene import Scene
-    from kin.indexing.verdict import IndexVerdict
     from kin.numeric.arrays import Array
     from kin.numeric.check import Check
+    from kin.turned.verdict import TurnedVerdict
 
 
 def _examined(design: IndexDesign, _: Clock) -> tuple[list[Check], tuple[Figure, ...]]:
@@ -49,11 +50,11 @@ def _section(design: IndexDesign, figures: Sequence[Figure]) -> dict[str, Any]:
     return {"indexing": index_section(design, figures)}
 
 
-def _rows(design: IndexDesign, verdict: IndexVerdict) -> dict[str, Any]:
-    return file_rows(design.recipe, verdict)
+def _rows(design: IndexDesign, verdict: TurnedVerdict) -> dict[str, Any]:
+    return turned_rows(design.recipe, verdict, named=True)
 
 
-def _maker(design: IndexDesign, clock: Clock) -> Callable[[FileRequest, Path], Made[IndexVerdict]]:
+def _maker(design: IndexDesign, clock: Clock) -> Callable[[FileRequest, Path], Made[TurnedVerdict]]:
     return partial(make, design, clock)
 
 

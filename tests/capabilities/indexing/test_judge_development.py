@@ -10,8 +10,9 @@ import pytest
 from capabilities.indexing.turrets import GLOBOID, TURN, Barrel, Turret, changed
 
 from kin.indexing.development import judged_line
-from kin.indexing.intent import Developed, Limits
 from kin.indexing.judge import verify_development
+from kin.numeric.limits import Limits
+from kin.turned.files import Developed
 
 LIMITS = Limits(0.01)
 THETA = np.arange(-2.0 * TURN, 2.0 * TURN, 0.005)

@@ -13,10 +13,10 @@ import numpy as np
 import pytest
 from capabilities.indexing.turrets import GLOBOID, Barrel, Turret, changed, made, solid, written
 
-from kin.indexing.intent import Limits
 from kin.indexing.judge import judge_mesh, verify
 from kin.indexing.rollers import Rollers
 from kin.indexing.volume import exact_volume
+from kin.numeric.limits import Limits
 from kin.read.mesh.checked import Triangles, checked
 
 TOLERANCE = 0.02

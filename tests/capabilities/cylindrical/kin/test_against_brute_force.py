@@ -24,10 +24,10 @@ from capabilities.cylindrical.kin.drums import (
 )
 
 from kin.cylindrical.gauge import gauges_of
-from kin.cylindrical.intent import Limits
 from kin.cylindrical.judge import judge_mesh, positions
 from kin.cylindrical.lifts import Lifts
 from kin.cylindrical.volume import exact_volume
+from kin.numeric.limits import Limits
 from kin.read.mesh.checked import Triangles, checked
 
 SEED = 20

@@ -7,9 +7,10 @@ import pytest
 from capabilities.cylindrical.kin.drums import Drum, Groove, Motion, replace
 
 from kin.cylindrical.development import judged_line
-from kin.cylindrical.intent import Developed, Limits
 from kin.cylindrical.judge import verify_development
+from kin.numeric.limits import Limits
 from kin.read.checks import UnitsError
+from kin.turned.files import Developed
 
 DRUM = Drum(track=Groove(12.5, 0.03))
 THETA = np.linspace(-0.3, 2.0 * math.pi + 0.3, 2401)

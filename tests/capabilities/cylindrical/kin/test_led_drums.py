@@ -31,11 +31,12 @@ from capabilities.cylindrical.kin.figures import forces, pressure_angles, rib_th
 from kin.cylindrical.development import judged_line
 from kin.cylindrical.frame import flank_points
 from kin.cylindrical.gauge import gauges_of
-from kin.cylindrical.intent import Developed, Limits
 from kin.cylindrical.judge import judge_mesh, positions
 from kin.cylindrical.play import exact_play
 from kin.cylindrical.volume import exact_volume
+from kin.numeric.limits import Limits
 from kin.read.mesh.checked import Triangles, checked
+from kin.turned.files import Developed
 
 SEED = 52
 SWING = math.radians(30.0)

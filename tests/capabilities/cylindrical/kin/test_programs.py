@@ -14,10 +14,10 @@ from support.cases import few
 from support.programmes import Segment, law, programme
 
 from kin.cylindrical.gauge import gauges_of
-from kin.cylindrical.intent import Limits
 from kin.cylindrical.lifts import Lifts
 from kin.cylindrical.program import off_path, verify_program
 from kin.cylindrical.roller import Gauge
+from kin.numeric.limits import Limits
 from kin.read.errors import ReadError
 from kin.turned.checks import Cutting
 from kin.turned.cutters import left_on

@@ -25,12 +25,13 @@ from capabilities.cylindrical.kin.screws import (
 from kin.cylindrical.crossings import Crossings
 from kin.cylindrical.development import judged_line
 from kin.cylindrical.gauge import gauges_of
-from kin.cylindrical.intent import Developed, Limits
 from kin.cylindrical.judge import judge_mesh, positions
 from kin.cylindrical.shoe import shoe_interference
 from kin.cylindrical.smooth import BINS, Crossed, Smooth, look
 from kin.cylindrical.volume import volume_within
+from kin.numeric.limits import Limits
 from kin.read.mesh.checked import Triangles, checked
+from kin.turned.files import Developed
 
 TOLERANCE = 0.012
 SCREW = screw()
