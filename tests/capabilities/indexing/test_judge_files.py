@@ -1,6 +1,6 @@
 """Solids of indexing cams: sound ones are accepted however they are saved, planted faults are refused.
 
-Holds: kin.indexing.contour, kin.indexing.faces, kin.indexing.holding, kin.indexing.judge, kin.indexing.verdict,
+Holds: kin.indexing.contour, kin.indexing.faces, kin.indexing.holding, kin.indexing.judge, kin.turned.verdict,
 kin.indexing.volume.
 """
 

@@ -1,6 +1,6 @@
 """Faults planted in meshes of a groove: each is refused, by the check that should find it.
 
-Holds: kin.cylindrical.edges, kin.cylindrical.faces, kin.cylindrical.verdict, kin.cylindrical.volume, kin.turned.bore.
+Holds: kin.cylindrical.edges, kin.cylindrical.faces, kin.turned.files, kin.cylindrical.volume, kin.turned.bore.
 """
 
 import math
