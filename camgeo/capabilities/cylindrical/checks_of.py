@@ -12,7 +12,7 @@ from camgeo.capabilities.cylindrical.crossings import wall_between
 from camgeo.capabilities.cylindrical.development import radii
 from camgeo.capabilities.cylindrical.figures import CONTACT_PRESSURE, at_angle, bears, steepest
 from camgeo.capabilities.cylindrical.flank import distance
-from camgeo.capabilities.cylindrical.keys import DEVELOPMENT
+from camgeo.formats.turned import DEVELOPMENT
 from camgeo.measures.placed import figure_check
 from camgeo.measures.rule_remark import RuleRemark
 from camgeo.measures.units import in_units

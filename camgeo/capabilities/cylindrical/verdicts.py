@@ -5,8 +5,9 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, Any
 
 from camgeo.capabilities.cylindrical.development import developed
-from camgeo.capabilities.cylindrical.keys import DEVELOPMENT, FILES
+from camgeo.capabilities.cylindrical.keys import FILES
 from camgeo.common.units import UNIT_MM
+from camgeo.formats.turned import DEVELOPMENT
 from camgeo.machining.turned import cutting_of
 from camgeo.part.as_intent import holes_of
 from camgeo.part.body import Body

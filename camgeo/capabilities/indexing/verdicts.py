@@ -5,8 +5,9 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from camgeo.capabilities.indexing.development import developed
-from camgeo.capabilities.indexing.keys import DEVELOPMENT, EXAMPLE, FILES, NO_PROGRAM, SOLID_OF_IT
+from camgeo.capabilities.indexing.keys import EXAMPLE, FILES, NO_PROGRAM, SOLID_OF_IT
 from camgeo.common.units import UNIT_MM
+from camgeo.formats.turned import DEVELOPMENT
 from camgeo.machining.turned import cutting_of
 from camgeo.part.as_intent import holes_of
 from camgeo.part.body import Body
