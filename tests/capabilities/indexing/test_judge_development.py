@@ -85,6 +85,19 @@ def test_a_bump_and_a_dent(name, by):
 
 
 @pytest.mark.parametrize("name", ["lower", "upper"])
+def test_a_line_across_a_track_whose_ends_are_right(name):
+    """From a line up to itself a turn later: all of its points are at one angle, and both ends are on the flank."""
+    radius = 48.0
+    (whole,) = line(BARREL, radius, name)
+    before = whole[whole[:, 0] + TURN * radius <= whole[-1, 0]]
+    start = before[len(before) // 2]
+    end = [start[0], np.interp(start[0] + TURN * radius, *whole.T)]
+    flank, checks = judged([whole, np.array([start, end])], radius, name, limits=Limits(0.1))
+    assert not checks["contour"].ok
+    assert flank.measured_error > 10.0
+
+
+@pytest.mark.parametrize("name", ["lower", "upper"])
 def test_a_line_that_is_missing(name):
     parts = line(BARREL, 48.0, name)
     _, checks = judged([part[:-200] for part in parts], 48.0, name)
