@@ -212,8 +212,17 @@ class _Judged:
         reach = np.stack([known.along[edged.start], known.along[edged.last]])
         beside = (reach.max(axis=0) >= intent.inner) & (reach.min(axis=0) <= intent.outer)
         slope = np.minimum(known.slope[edged.start], known.slope[edged.last])
-        most = (edged.worst.open - edged.worst.excess)[beside] / slope[beside]
+        most = pushed_by((edged.worst.open - edged.worst.excess)[beside], slope[beside])
         return peak._replace(remainder=max(0.0, float(most.max(initial=-math.inf)) - peak.value))
+
+
+def pushed_by(depth: Array, slope: Array) -> Array:
+    """Angles (n,), rad, by which edges push the turret at most, by their depth, mm^2, and its slope by the angle.
+
+    The depth is convex in the angle. Where its slope is 0 a roller touches with its very side, and nothing bounds it.
+    """
+    with np.errstate(divide="ignore", invalid="ignore"):
+        return np.where(slope > 0.0, depth / slope, np.where(depth > 0.0, np.inf, -np.inf))
 
 
 def _least(offs: dict[str, Array]) -> Array:
