@@ -17,7 +17,6 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from kin.cylindrical.contact import set_down, spans_of
 from kin.cylindrical.crossings import Crossings, Gap
 from kin.cylindrical.edges import look
 from kin.cylindrical.faces import BLANK, BORE, BOTTOM, FLOOR, TOP, Body, faces_of
@@ -129,24 +128,6 @@ def judge_mesh(read: CheckedMesh, drum: DrumIntent, limits: Limits, kind: str = 
     except UnsettledError as error:
         checks.append(failed(CONTOUR, str(error), unit="mm", limit=limits.tolerance))
     return TurnedVerdict(kind, tuple(checks), tuple(verdicts), play, read.units_mm or 1.0, read.mesh)
-
-
-def positions(read: CheckedMesh, drum: DrumIntent, theta: Array) -> tuple[Array, Array]:
-    """Heights (n,), (n,), mm, of the roller's axis set down on the lower and on the upper flank at angles (n,), rad.
-
-    Of an arm they are its angles, rad. Of a rib the heights are those of the middle between its rollers; nan where
-    there is no such flank, or no contact.
-    The roller of an upper flank is the drum's own, without the clearance.
-    """
-    body = Body.of(read.mesh, mirrored=drum.mirrored)
-    found = {"lower": np.full(len(theta), np.nan), "upper": np.full(len(theta), np.nan)}
-    faces = faces_of(body, drum, gauges_of(drum), read.rounding)
-    for stands in faces.stands:
-        lift = stands.gauge.lifts.at(theta)[0]
-        gives = _own_gives(stands, drum, theta) / stands.gauge.lever
-        away = gives if stands.gauge.side < 0 else -gives
-        found[stands.gauge.name] = np.where(np.isfinite(gives), drum.follower.start + lift + away, np.nan)
-    return found["lower"], found["upper"]
 
 
 def plain_checks(job: Judged, off: Mapping[str, float]) -> list[Check]:
@@ -275,15 +256,6 @@ def _implied(gauge: Gauge, tolerance: float) -> float:
 def placed(check: Check, theta: float, turns: int = 1) -> Check:
     """The check with its shaft angle, rad, over so many turns of the motion."""
     return replace(check, at=degrees_over(theta, turns) if math.isfinite(theta) else None)
-
-
-def _own_gives(stands: Stands, drum: DrumIntent, theta: Array) -> Array:
-    """How far the drum's own roller is kept from its place at angles (n,), rad, mm, above 0 away from the metal."""
-    gauge = replace(stands.gauge, radius=drum.follower.radius)
-    body = stands.body
-    corners = body.corners[stands.touched]
-    reach = math.asin(min(1.0, gauge.reach / gauge.inner))
-    return set_down(gauge, body.points[corners], spans_of(body.phi, corners, reach, gauge.lifts.period), theta)
 
 
 def _held(job: Judged, stands: Stands, seen: Seen) -> Array:
