@@ -143,12 +143,12 @@ def _flank(
 
 def _motion_error(seen: SeenSmooth, job: Judged, gauge: Gauge) -> MotionError:
     """Error of the motion where the flank is to carry the roller."""
-    low, high, told = seen.least, seen.out, job.told
+    low, high = seen.least, seen.out
     worst = high if high.value >= -low.value else Peak(-low.value, low.at, low.remainder)
     bound = max(high.value + high.remainder, low.remainder - low.value)
     rms = float(np.sqrt(np.mean(seen.holds[seen.carried] ** 2)))
-    left, place = told * max(bound - worst.value, 0.0), gauge.lifts.degrees(worst.at)
-    return MotionError(told * worst.value, place, left, told * low.value, told * high.value, told * rms, job.unit)
+    left, place = max(bound - worst.value, 0.0), gauge.lifts.degrees(worst.at)
+    return MotionError(worst.value, place, left, low.value, high.value, rms, "mm").scaled(job.per_mm, job.unit)
 
 
 # --- which face is which ----------------------------------------------------------------------------------------------

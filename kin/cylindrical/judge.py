@@ -80,7 +80,7 @@ def verify_development(
 class Judged:
     """A file being judged: what it is held against, by which gauges, and the rounding of its places, `slack`, mm.
 
-    Positions are mm along the path of the roller's axis; `told` gives them in the follower's unit, mm or deg.
+    Positions are mm along the path of the roller's axis; `per_mm` gives them in the follower's unit, mm or deg.
     """
 
     gauges: tuple[Gauge, ...]
@@ -94,9 +94,9 @@ class Judged:
         return self.drum.follower.unit
 
     @cached_property
-    def told(self) -> float:
+    def per_mm(self) -> float:
         """One mm of travel in the unit of positions."""
-        return self.drum.follower.told(1.0) / self.gauges[0].lever
+        return self.drum.follower.in_unit(1.0) / self.gauges[0].lever
 
 
 def judge_mesh(read: CheckedMesh, drum: DrumIntent, limits: Limits, kind: str = "") -> TurnedVerdict:
@@ -210,22 +210,21 @@ def contour_check(job: Judged, proud: Peak, bare: Peak) -> tuple[Check, float]:
 
 def _motion_error(seen: Seen, held: Mask, job: Judged, gauge: Gauge) -> MotionError:
     """Error of the motion at the angles of the grid (n,) at which the flank is to carry the roller."""
-    told = job.told
     holds = np.where(held, seen.holds, np.inf)
     k = int(np.argmin(holds))
     least, most = float(holds[k]), seen.out.value
     bound = max(seen.out.value + seen.out.remainder, -float(seen.least[held].min()))
     worst, at = (-least, k * seen.grid.width) if -least > most else (most, seen.out.at)
     rms = float(np.sqrt(np.mean(seen.holds[held] ** 2)))
-    left, place = told * max(bound - worst, 0.0), gauge.lifts.degrees(at)
-    return MotionError(told * worst, place, left, told * least, told * most, told * rms, job.unit)
+    left, place = max(bound - worst, 0.0), gauge.lifts.degrees(at)
+    return MotionError(worst, place, left, least, most, rms, "mm").scaled(job.per_mm, job.unit)
 
 
 def motion_check(job: Judged, motion: MotionError, gauge: Gauge, free: tuple[tuple[float, float], ...] = ()) -> Check:
     """Check of the motion on a flank, in the unit of positions, beside stretches, degrees, where it carries nothing."""
-    told, tolerance, given = job.told, job.limits.tolerance, _given(job, job.limits.motion)
-    limit, room = limit_of(lambda e: told * _implied(gauge, e), given, tolerance, job.slack)
-    worst = assured(motion.max, motion.remainder, told * tolerance) if given is None else motion.bound
+    per_mm, tolerance, given = job.per_mm, job.limits.tolerance, _given(job, job.limits.motion)
+    limit, room = limit_of(lambda e: per_mm * _implied(gauge, e), given, tolerance, job.slack)
+    worst = assured(motion.max, motion.remainder, per_mm * tolerance) if given is None else motion.bound
     detail = f"true within {amount_words(motion.remainder, job.unit, '.2g')}" if motion.remainder else ""
     if free:
         longest = max(high - low for low, high in free)
@@ -233,14 +232,14 @@ def motion_check(job: Judged, motion: MotionError, gauge: Gauge, free: tuple[tup
         detail = f"{detail}; {beside}" if detail else beside
     check = at_most(MOTION, worst, limit, job.unit, detail=detail, slack=room)
     check = replace(check, at=motion.at)
-    stroke = job.drum.follower.told(gauge.lifts.stroke)
-    loose = given is None and is_loose(limit, told * tolerance, lambda: stroke)
+    stroke = job.drum.follower.in_unit(gauge.lifts.stroke)
+    loose = given is None and is_loose(limit, per_mm * tolerance, lambda: stroke)
     return unlimited(check) if loose else check
 
 
 def _given(job: Judged, limit: float | None) -> float | None:
     """A limit that is given, mm or rad, in the unit of positions."""
-    return None if limit is None else job.drum.follower.told(limit)
+    return None if limit is None else job.drum.follower.in_unit(limit)
 
 
 def assured(value: float, remainder: float, tolerance: float) -> float:
@@ -289,19 +288,19 @@ def play_check(job: Judged, pinched: Array, own: Array, theta: Array) -> tuple[P
     `pinched` is by how much the gauges do not fit, and `own` the follower's own play (n,), mm, at angles (n,), rad.
     """
     k = int(np.argmax(np.abs(pinched)))
-    own = own * job.told
+    own = own * job.per_mm
     least, most = int(np.argmin(own)), int(np.argmax(own))
     places = [job.gauges[0].lifts.degrees(float(theta[k])) for k in (least, most)]
     play = Play(float(own[least]), places[0], float(own[most]), places[1], job.unit)
 
     def implied(tolerance: float) -> float:
-        return job.told * sum(_implied(gauge, tolerance) for gauge in job.gauges)
+        return job.per_mm * sum(_implied(gauge, tolerance) for gauge in job.gauges)
 
     limit, room = limit_of(implied, _given(job, job.limits.play), job.limits.tolerance, job.slack)
     told = f"the follower's own play is {_between(play)}"
     if play.least < 0.0:
         told += f": it is pinched by up to {amount_words(-play.least, job.unit, '.3g')}"
-    check = at_most(PLAY, job.told * float(abs(pinched[k])), limit, job.unit, detail=told, slack=room)
+    check = at_most(PLAY, job.per_mm * float(abs(pinched[k])), limit, job.unit, detail=told, slack=room)
     return play, placed(check, float(theta[k]), job.drum.follower.turns)
 
 

@@ -36,7 +36,6 @@ if TYPE_CHECKING:
     from kin.cylindrical.intent import DrumIntent
     from kin.cylindrical.lifts import Lifts
     from kin.cylindrical.roller import Gauge
-    from kin.law.contacts import Unit
     from kin.numeric.arrays import Array, Indices
     from kin.numeric.limits import Limits
     from kin.turned.checks import Cutting
@@ -151,7 +150,7 @@ def _flank(job: Judged, gauge: Gauge, passes: list[Pass], cutting: Cutting) -> t
     detail = f"{words}; true within {length_words(remainder, '.2g')} {UNIT}"
     value = worst if worst > tolerance else assured(worst, remainder, tolerance)
     check = replace(at_most(CONTOUR, value, tolerance, "mm", detail=detail, slack=job.slack), at=_angle(at))
-    motion = _motion(gauge, left, job.told, job.unit)
+    motion = _motion(gauge, left).scaled(job.per_mm, job.unit)
     return FlankVerdict(gauge.name, motion, worst), [
         check,
         motion_check(job, motion, gauge),
@@ -172,8 +171,8 @@ def _extremes(left: Left) -> tuple[float, float, float]:
     return worst, float(left.theta[k]), max(bound - worst, 0.0)
 
 
-def _motion(gauge: Gauge, left: Left, told: float, unit: Unit) -> MotionError:
-    """Error of the roller on what is left: it stands where that holds it highest along its length."""
+def _motion(gauge: Gauge, left: Left) -> MotionError:
+    """Error of the roller on what is left, mm: it stands where that holds it highest along its length."""
     rows = max(int(np.searchsorted(left.rho, gauge.outer, side="right")), 2)
     lean = 1.0 / upright_at(gauge, left.theta, left.rho[:rows, None])
     held = (left.off[:rows] * lean).max(axis=0)
@@ -184,15 +183,8 @@ def _motion(gauge: Gauge, left: Left, told: float, unit: Unit) -> MotionError:
     k = int(np.argmax(np.abs(held)))
     worst = float(abs(held[k]))
     share = 0.5 * (np.append(np.diff(left.theta), 0.0) + np.append(0.0, np.diff(left.theta))) / gauge.lifts.period
-    return MotionError(
-        told * worst,
-        _angle(left.theta[k]),
-        told * max(most - worst, -least - worst, 0.0),
-        told * float(held.min()),
-        told * float(held.max()),
-        told * float(np.sqrt((share * held**2).sum())),
-        unit,
-    )
+    rms, rest = float(np.sqrt((share * held**2).sum())), max(most - worst, -least - worst, 0.0)
+    return MotionError(worst, _angle(left.theta[k]), rest, float(held.min()), float(held.max()), rms, "mm")
 
 
 def upright_at(gauge: Gauge, theta: Array, rho: Array) -> Array:
@@ -223,11 +215,10 @@ def _by_path(job: Judged, gauge: Gauge, passes: list[Pass], cutting: Cutting) ->
     check = replace(at_most(CONTOUR, most, tolerance, "mm", detail=detail, slack=job.slack), at=_angle(at))
     least, most = min(each.least for each in off), max(each.most for each in off)
     least, most = (least, most) if gauge.side < 0 else (-most, -least)
-    told = job.told
     # what is off across the roller's path, or too wide, moves it by no more than a flank that is off by as much
     by_flank = gauge.by_error(beside + remainder + beyond) if beside + remainder + beyond else 0.0
-    rms = told * max(abs(least), abs(most))
-    motion = MotionError(told * worst, _angle(at), told * by_flank, told * least, told * most, rms, job.unit)
+    rms = max(abs(least), abs(most))
+    motion = MotionError(worst, _angle(at), by_flank, least, most, rms, "mm").scaled(job.per_mm, job.unit)
     return FlankVerdict(gauge.name, motion, worst), [
         check,
         motion_check(job, motion, gauge),

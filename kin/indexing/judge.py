@@ -253,9 +253,8 @@ def motion_error(holds: Held, pushed: Peak) -> MotionError:
     bound = max(pushed.value + pushed.remainder, most, -float(holds.between.min()))
     worst, at = (-least, k * TURN / len(holds.at)) if -least > most else (most, pushed.at)
     rms = float(np.sqrt(np.mean(holds.at**2)))
-    left = max(bound - worst, 0.0)
-    worst, left, least, most, rms = (math.degrees(one) for one in (worst, left, least, most, rms))
-    return MotionError(worst, degrees(at), left, least, most, rms, "deg")
+    found = MotionError(worst, degrees(at), max(bound - worst, 0.0), least, most, rms, "deg")
+    return found.scaled(math.degrees(1.0), "deg")
 
 
 def motion_check(rollers: Rollers, motion: MotionError, limits: Limits, slack: float, cost: float) -> Check:

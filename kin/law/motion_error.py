@@ -39,6 +39,11 @@ class MotionError:
             return self
         return replace(self, max=self.max + by, least=self.least - by, most=self.most + by, rms=self.rms + by)
 
+    def scaled(self, by: float, unit: Unit) -> MotionError:
+        """The error in another unit, `by` of which are one of its own."""
+        sizes = {name: by * getattr(self, name) for name in ("max", "remainder", "least", "most", "rms")}
+        return replace(self, unit=unit, **sizes)
+
     @property
     def bound(self) -> float:
         """Greatest magnitude with what the remainder adds, in the unit of the error."""

@@ -81,7 +81,7 @@ class FollowedDrum:
     @property
     def scale(self) -> float:
         """Factor by which positions, mm or rad, become numbers of the reported unit."""
-        return self.run.follower.told(1.0)
+        return self.run.follower.in_unit(1.0)
 
     @property
     def lever(self) -> float:

@@ -307,6 +307,15 @@ def test_a_led_roller_set_down(name):
         np.testing.assert_allclose(gives, held, atol=1e-5)
 
 
+def test_the_path_of_a_roller_that_an_arm_takes_round_too_fast_is_not_judged():
+    fast = replace(ARM, motion=Motion(((SWING, 10.0, "cycloidal"), (0.0, 90.0, ""), (-SWING, 260.0, "cycloidal"))))
+    level = np.array([[0.0, 40.0], [2.0 * math.pi * 50.0, 40.0]])
+    flank, (check,) = judged_line([level], fast.intent(), Developed("L", 50.0, "pitch"), LIMITS)
+    assert not check.ok
+    assert check.detail.startswith("the arm takes its roller round as fast")
+    assert flank.motion is None
+
+
 THETA = np.linspace(-0.5, 2.0 * math.pi + 0.5, 2401)
 
 
