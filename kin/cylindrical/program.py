@@ -23,10 +23,9 @@ from kin.numeric.errors import UnsettledError
 from kin.numeric.lengths import UNIT, length_words
 from kin.numeric.records import replace
 from kin.read.checks import count_check
-from kin.read.errors import ReadError
 from kin.turned.checks import Work, astray, cleared_check, cutter_check, depth_check, feed_check, rapid_check
 from kin.turned.cutters import END, finest_on, left_on
-from kin.turned.moves import passes_of, read_turned
+from kin.turned.files import verify_moves
 from kin.turned.verdict import CONTOUR, FlankVerdict, TurnedVerdict
 
 if TYPE_CHECKING:
@@ -64,15 +63,12 @@ class _Path(NamedTuple):
 
 def verify_program(path: Path, drum: DrumIntent, cutting: Cutting, limits: Limits) -> TurnedVerdict:
     """Judge a program by what its cutter leaves; raises OSError where the disk refuses."""
-    try:
-        program = read_turned(path)
-    except ReadError as error:
-        return TurnedVerdict.unread(path, "gcode", "program", error)
-    if drum.mirrored:
-        program = replace(program, moves=tuple(move.mirrored() for move in program.moves))
-    passes = list(passes_of(program.moves, drum.radius))
-    checks, flanks = judged_passes(program, passes, drum, cutting, limits)
-    return TurnedVerdict("gcode", tuple(checks), tuple(flanks), units=program.units_mm).about(path)
+
+    def judge(program: TurnedProgram, passes: list[Pass]) -> TurnedVerdict:
+        checks, flanks = judged_passes(program, passes, drum, cutting, limits)
+        return TurnedVerdict("gcode", tuple(checks), tuple(flanks), units=program.units_mm)
+
+    return verify_moves(path, drum.radius, judge, mirrored=drum.mirrored)
 
 
 def judged_passes(

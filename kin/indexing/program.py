@@ -31,10 +31,9 @@ from kin.numeric.errors import UnsettledError
 from kin.numeric.lengths import UNIT, length_words
 from kin.numeric.records import dataclass, replace
 from kin.read.checks import count_check
-from kin.read.errors import ReadError
 from kin.turned.checks import Work, astray, cleared_check, cutter_check, depth_check, feed_check, rapid_check
 from kin.turned.cutters import cells_within, corners_of, finest_on, left_on
-from kin.turned.moves import passes_of, read_turned
+from kin.turned.files import verify_moves
 from kin.turned.verdict import CONTOUR, FlankVerdict, TurnedVerdict
 
 if TYPE_CHECKING:
@@ -61,14 +60,8 @@ MOST_PLACES = 4_000_000  # at which the cutter is held against one
 def verify_program(path: Path, intent: IndexIntent, cutting: Cutting, limits: Limits) -> TurnedVerdict:
     """Judge a program by what its cutter leaves; raises OSError where the disk refuses, ValueError for a globoid."""
     intent.form.guide(intent.height, intent.start)
-    try:
-        program = read_turned(path)
-    except ReadError as error:
-        return TurnedVerdict.unread(path, "gcode", "program", error)
-    if intent.mirrored:
-        program = replace(program, moves=tuple(move.mirrored() for move in program.moves))
     job = _Judged(Rollers(intent, limits.tolerance), cutting, limits)
-    return job.verdict(program, list(passes_of(program.moves, intent.form.radius))).about(path)
+    return verify_moves(path, intent.form.radius, job.verdict, mirrored=intent.mirrored)
 
 
 def finest_told(intent: IndexIntent, cutting: Cutting) -> float:

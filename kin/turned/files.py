@@ -1,4 +1,4 @@
-"""Solids of triangles and developments of turning bodies: what is read, and checked, before a flank is looked at."""
+"""Files of turning bodies, solids, developments and programs: what is read and checked before flanks are looked at."""
 
 from __future__ import annotations
 
@@ -15,6 +15,7 @@ from kin.read.errors import ReadError
 from kin.read.files import read_mesh
 from kin.read.formats import format_of
 from kin.read.mesh.split import joined
+from kin.turned.moves import passes_of, read_turned
 from kin.turned.verdict import TurnedVerdict
 
 if TYPE_CHECKING:
@@ -23,6 +24,7 @@ if TYPE_CHECKING:
 
     from kin.numeric.arrays import Array
     from kin.read.mesh.checked import CheckedMesh
+    from kin.turned.moves import Pass, TurnedProgram
     from kin.turned.verdict import FlankVerdict
 
 WATERTIGHT = "watertight"
@@ -105,6 +107,22 @@ def verify_lines(
         verdicts.append(replace(flank, name=line.layer))
         checks += [replace(check, surface=line.layer) for check in own]
     return TurnedVerdict(kind.name, tuple(checks), tuple(verdicts), units=mm, lines=tuple(points)).about(path)
+
+
+def verify_moves(
+    path: Path, blank: float, judge: Callable[[TurnedProgram, list[Pass]], TurnedVerdict], *, mirrored: bool
+) -> TurnedVerdict:
+    """Verdict on a program, as `judge` gives it for its moves and its passes in a blank of a radius, mm, not mirrored.
+
+    Raises OSError where the disk refuses.
+    """
+    try:
+        program = read_turned(path)
+    except ReadError as error:
+        return TurnedVerdict.unread(path, "gcode", "program", error)
+    if mirrored:
+        program = replace(program, moves=tuple(move.mirrored() for move in program.moves))
+    return judge(program, list(passes_of(program.moves, blank))).about(path)
 
 
 def closed_mesh(read: CheckedMesh, tolerance: float) -> tuple[CheckedMesh, Check]:
