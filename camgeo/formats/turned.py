@@ -5,6 +5,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from camgeo.formats.options import RECIPE_UNITS, SOLID_UNITS, TOLERANCE
+from camgeo.recipe.export import requests
 from camgeo.recipe.machining import BY_MINUTE, INVERSE, LEAST_PLACES, MANUFACTURE, MOST_PLACES
 from camgeo.registry.formats import FORMATS, Form
 from camgeo.registry.slot import NO_CHECK
@@ -14,6 +15,8 @@ from camgeo.schema.yaml_source import Scalar
 from kin.numeric.records import replace
 
 if TYPE_CHECKING:
+    from camgeo.recipe.export import FileRequest
+    from camgeo.recipe.recipe import ShaftOrder
     from camgeo.registry.formats import Format
     from camgeo.schema.fields import Schema
     from camgeo.schema.reader import Reader, Values
@@ -127,6 +130,24 @@ def program_files(cutter: str, *own: Field) -> dict[str, Format]:
     return {
         name: replace(record, options=options, check=NO_CHECK) for name, record in FORMATS.items() if record.program
     }
+
+
+def program_asked(recipe: ShaftOrder, request: FileRequest | None, example: str) -> FileRequest:
+    """The request by whose cutter a program is judged: its own, or the first program that the recipe asks for.
+
+    Raises RecipeErrors where it asks for none, with an `example` of options.
+    """
+    asked = request or next((each for each in recipe.export.files if each.format.program), None)
+    if asked is None:
+        remedy = f"give export: {{files: [{{gcode: {{{example}}}}}]}}: a program is judged by its cutter"
+        raise recipe.error("export.files", "no program is asked for", None, remedy)
+    return asked
+
+
+def developments_asked(recipe: ShaftOrder, request: FileRequest | None, files: dict[str, Format]) -> list[FileRequest]:
+    """Requests with which a development is compared: its own, or all that the recipe has, or else the default one."""
+    own = [request] if request is not None else [each for each in recipe.export.files if each.as_ == DEVELOPMENT]
+    return own or list(requests([{"kind": "dxf"}], files))
 
 
 def programs_in(values: Values, reader: Reader, example: str) -> list[Values]:

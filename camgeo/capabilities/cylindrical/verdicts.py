@@ -7,11 +7,10 @@ from typing import TYPE_CHECKING, Any
 from camgeo.capabilities.cylindrical.development import developed
 from camgeo.capabilities.cylindrical.keys import FILES
 from camgeo.common.units import UNIT_MM
-from camgeo.formats.turned import DEVELOPMENT
+from camgeo.formats.turned import developments_asked, program_asked
 from camgeo.machining.turned import cutting_of
 from camgeo.part.as_intent import holes_of
 from camgeo.part.body import Body
-from camgeo.recipe.export import requests
 from kin.cylindrical import intent
 from kin.cylindrical.follower import DrumFollower
 from kin.cylindrical.judge import verify, verify_development
@@ -73,8 +72,7 @@ def judged_file(
     if format_of(path).contents != "drawing":
         own = 1.0 if request is None else UNIT_MM[request.unit_for("mm")]
         return verify(path, intended(design), limits, None if stated else units or own)
-    asked = [request] if request is not None else [each for each in recipe.export.files if each.as_ == DEVELOPMENT]
-    asked = asked or list(requests([{"kind": "dxf"}], FILES))
+    asked = developments_asked(recipe, request, FILES)
     mm = UNIT_MM[asked[0].unit_for(recipe.units)]
     lines = {line.layer: line for each in asked for line in developed(design, each, mm)}
     return verify_development(path, intended(design, mm), list(lines.values()), limits, None if stated else units or mm)
@@ -85,8 +83,5 @@ def _judged_program(design: DrumDesign, path: Path, request: FileRequest | None,
     from kin.cylindrical.program import verify_program
 
     recipe = design.recipe
-    asked = request or next((each for each in recipe.export.files if each.format.program), None)
-    if asked is None:
-        remedy = "give export: {files: [{gcode: {axes: [X, A], cutter: 20, ...}}]}: a program is judged by its cutter"
-        raise recipe.error("export.files", "no program is asked for", None, remedy)
+    asked = program_asked(recipe, request, "axes: [X, A], cutter: 20, ...")
     return verify_program(path, intended(design), cutting_of(asked, recipe.track.depth), limits)

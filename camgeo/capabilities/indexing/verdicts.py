@@ -7,11 +7,10 @@ from typing import TYPE_CHECKING
 from camgeo.capabilities.indexing.development import developed
 from camgeo.capabilities.indexing.keys import EXAMPLE, FILES, NO_PROGRAM, SOLID_OF_IT
 from camgeo.common.units import UNIT_MM
-from camgeo.formats.turned import DEVELOPMENT
+from camgeo.formats.turned import developments_asked, program_asked
 from camgeo.machining.turned import cutting_of
 from camgeo.part.as_intent import holes_of
 from camgeo.part.body import Body
-from camgeo.recipe.export import requests
 from kin.indexing import intent
 from kin.numeric.limits import Limits
 from kin.read.formats import format_of
@@ -73,8 +72,7 @@ def judged_file(
         raise recipe.error(recipe.stated("cam.globoid"), "a globoid has no development", None, "give a solid of it")
     from kin.indexing.judge import verify_development
 
-    asked = [request] if request is not None else [each for each in recipe.export.files if each.as_ == DEVELOPMENT]
-    asked = asked or list(requests([{"kind": "dxf"}], FILES))
+    asked = developments_asked(recipe, request, FILES)
     mm = UNIT_MM[asked[0].unit_for(recipe.units)]
     lines = {line.layer: line for each in asked for line in developed(design, each, mm)}
     return verify_development(path, intended(design, mm), list(lines.values()), limits, None if stated else units or mm)
@@ -87,8 +85,5 @@ def _judged_program(design: IndexDesign, path: Path, request: FileRequest | None
     recipe = design.recipe
     if not recipe.turret.unrolls:
         raise recipe.error(recipe.stated("cam.globoid"), NO_PROGRAM, None, SOLID_OF_IT)
-    asked = request or next((each for each in recipe.export.files if each.format.program), None)
-    if asked is None:
-        remedy = f"give export: {{files: [{{gcode: {{{EXAMPLE}}}}}]}}: a program is judged by its cutter"
-        raise recipe.error("export.files", "no program is asked for", None, remedy)
+    asked = program_asked(recipe, request, EXAMPLE)
     return verify_program(path, intended(design), cutting_of(asked, recipe.form.depth), limits)
