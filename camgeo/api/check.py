@@ -118,13 +118,14 @@ class Figures(Mapping[str, Figure]):
 
     @staticmethod
     def placed(recipe: Order, figures: Iterable[Placed], at_unit: str) -> Figures:
-        """Figures in the recipe's units, with places in `at_unit`; one that has no value is `nowhere`."""
+        """Figures in the recipe's units, of places in `at_unit`, mm or deg, too; one without a value is `nowhere`."""
         found = {}
         for figure in figures:
             value, unit = in_units(recipe, figure.value, figure.unit)
             finite = value is not None and math.isfinite(value)
-            detail, over = "" if finite else "nowhere", "" if figure.at is None else at_unit
-            found[figure.name] = Figure(value if finite else None, unit, figure.at, detail, over)
+            at, over = in_units(recipe, figure.at, at_unit)
+            detail, over = "" if finite else "nowhere", "" if at is None else over
+            found[figure.name] = Figure(value if finite else None, unit, at, detail, over)
         return Figures(found)
 
     def __getitem__(self, name: str) -> Figure:

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Any, Protocol
 
 import numpy as np
 
+from camgeo.api.check import Check, Figures
 from camgeo.api.root import Root
 from camgeo.api.shown import Shown
 from camgeo.checks.declared import LIMIT
@@ -21,10 +22,10 @@ if TYPE_CHECKING:
 
     from numpy.typing import ArrayLike
 
-    from camgeo.api.check import Check, Figures
     from camgeo.api.shown import Drawing
     from camgeo.checks.declaration import Entry
     from camgeo.files.mesh import Mesh
+    from camgeo.measures.placed import Figure as Placed
     from camgeo.motions.stated import StatedMotion
     from camgeo.output.extension import FileCall
     from camgeo.output.own_kind import OwnKind
@@ -228,3 +229,30 @@ class KindDesign(ABC):
         return notebook.notebook_html(
             self._drawing(), self.recipe.name, self.checks, notebook.table(("figure", ""), rows)
         )
+
+
+class DesignInRun(KindDesign):
+    """A design of a kind that makes files: its checks and figures, in the recipe's units, are those of a run."""
+
+    _design: Any
+
+    @property
+    @abstractmethod
+    def kind(self) -> OwnKind[Any, Any]:
+        """What the kind answers in a run."""
+
+    @cached_property
+    def _figures(self) -> Sequence[Placed]:
+        return self.kind.figures(self._design)
+
+    @cached_property
+    def checks(self) -> tuple[Check, ...]:
+        """The checks that need no file, those of limits among them."""
+        checks = self.kind.checks(self._design, self._figures)
+        every = (*checks, *self.kind.limited(self._design, self._figures, checks))
+        return tuple(Check.of(self.recipe, check) for check in every)
+
+    @cached_property
+    def figures(self) -> Figures:
+        """The figures by name, each with its place: over the travel, or the shaft angle in degrees."""
+        return Figures.placed(self.recipe, self._figures, self.kind.at_unit)

@@ -1,12 +1,13 @@
-"""Options of programs for a machine that turns its work under the cutter, and what a recipe has to say of each."""
+"""Formats of the files of a turning body, with their options, and what a recipe has to say of each program."""
 
 from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from camgeo.formats.options import RECIPE_UNITS, TOLERANCE
+from camgeo.formats.options import RECIPE_UNITS, SOLID_UNITS, TOLERANCE
+from camgeo.recipe.export import requests
 from camgeo.recipe.machining import BY_MINUTE, INVERSE, LEAST_PLACES, MANUFACTURE, MOST_PLACES
-from camgeo.registry.formats import FORMATS
+from camgeo.registry.formats import FORMATS, Form
 from camgeo.registry.slot import NO_CHECK
 from camgeo.schema.errors import quote
 from camgeo.schema.fields import Field, FieldTable, Kind, OwnForm, either, length
@@ -14,11 +15,15 @@ from camgeo.schema.yaml_source import Scalar
 from kin.numeric.records import replace
 
 if TYPE_CHECKING:
+    from camgeo.recipe.export import FileRequest
+    from camgeo.recipe.recipe import ShaftOrder
     from camgeo.registry.formats import Format
     from camgeo.schema.fields import Schema
     from camgeo.schema.reader import Reader, Values
     from camgeo.schema.yaml_source import Node
 
+DEVELOPMENT = "development"
+"""Word of the drawing whose lines are laid round a cylinder."""
 AXES = (("X", "A"), ("X", "Y", "A"))
 """Axes that a program may move beside Z."""
 NEEDED = ("axes", "cutter", "feed", "plunge", "spindle", "safe_height")
@@ -43,6 +48,45 @@ def _axes_schema(_: Field) -> Schema:
 
 
 _AXES: OwnForm[Reader] = OwnForm("a list of axes", "a list of axes such as [X, A]", _read_axes, _axes_schema)
+
+
+def turned_files(
+    unrolled: str, at: Field, programs: dict[str, Format], tables: tuple[str, ...], *, surfaces: bool = False
+) -> dict[str, Format]:
+    """Formats by their names: meshes, developments, programs, tables, pages; with `surfaces` solids of those too.
+
+    `unrolled` says what a development shows, `at` is the key of its radii. `tables` are their words, the first the
+    default.
+    """
+    form = Field("as", Kind.CHOICE, unrolled, default=DEVELOPMENT, choices=(DEVELOPMENT,))
+    solids = {name: _solid(name, "triangles", SOLID_UNITS, TOLERANCE) for name in ("stl", "ply", "3mf")}
+    if surfaces:
+        solids["step"] = replace(_solid("step", "patches", SOLID_UNITS, TOLERANCE), check=NO_CHECK)
+    table = Field("as", Kind.CHOICE, "which table it is", default=tables[0], choices=tables)
+    step = Field("step", Kind.ANGLE, "shaft angle between rows", default="0.5", at_least=0.001, at_most=90)
+    return {
+        **solids,
+        "glb": replace(_solid("glb", "triangles", TOLERANCE), contour=False),
+        "dxf": replace(
+            FORMATS["dxf"],
+            options=FieldTable((form, at, RECIPE_UNITS, TOLERANCE)),
+            forms={DEVELOPMENT: Form(name=DEVELOPMENT, pieces="lines")},
+            check=NO_CHECK,
+            contour=True,
+        ),
+        **programs,
+        "csv": replace(
+            FORMATS["csv"],
+            options=FieldTable((table, step, RECIPE_UNITS)),
+            forms={name: Form(name=name) for name in tables},
+            check=NO_CHECK,
+        ),
+        "html": replace(FORMATS["html"], options=FieldTable(())),
+    }
+
+
+def _solid(name: str, pieces: str, *options: Field) -> Format:
+    return replace(FORMATS[name], options=FieldTable(options), forms={"": Form(pieces=pieces)}, solid=False)
 
 
 def program_files(cutter: str, *own: Field) -> dict[str, Format]:
@@ -86,6 +130,24 @@ def program_files(cutter: str, *own: Field) -> dict[str, Format]:
     return {
         name: replace(record, options=options, check=NO_CHECK) for name, record in FORMATS.items() if record.program
     }
+
+
+def program_asked(recipe: ShaftOrder, request: FileRequest | None, example: str) -> FileRequest:
+    """The request by whose cutter a program is judged: its own, or the first program that the recipe asks for.
+
+    Raises RecipeErrors where it asks for none, with an `example` of options.
+    """
+    asked = request or next((each for each in recipe.export.files if each.format.program), None)
+    if asked is None:
+        remedy = f"give export: {{files: [{{gcode: {{{example}}}}}]}}: a program is judged by its cutter"
+        raise recipe.error("export.files", "no program is asked for", None, remedy)
+    return asked
+
+
+def developments_asked(recipe: ShaftOrder, request: FileRequest | None, files: dict[str, Format]) -> list[FileRequest]:
+    """Requests with which a development is compared: its own, or all that the recipe has, or else the default one."""
+    own = [request] if request is not None else [each for each in recipe.export.files if each.as_ == DEVELOPMENT]
+    return own or list(requests([{"kind": "dxf"}], files))
 
 
 def programs_in(values: Values, reader: Reader, example: str) -> list[Values]:

@@ -79,16 +79,12 @@ def limit_checks(
 
 
 def limits_and_wall(
-    bounds: Sequence[Bound],
-    figures: Sequence[Figure],
-    checks: Sequence[Check],
-    at_unit: str,
-    surfaces: Sequence[str] = ("",),
+    bounds: Sequence[Bound], figures: Sequence[Figure], checks: Sequence[Check], at_unit: str
 ) -> list[Check]:
     """Checks of the figures that a recipe limits, and of the least wall, which is measured by one of `checks`."""
     measured = (check.value for check in checks if check.name == LEAST_WALL)
     walls = [Figure(LEAST_WALL, value, "mm") for value in measured if value is not None]
-    return limit_checks(bounds, [*figures, *walls[:1]], at_unit, surfaces)
+    return limit_checks(bounds, [*figures, *walls[:1]], at_unit)
 
 
 def figure_entry(recipe: Order, figure: Figure, per: float) -> dict[str, Any]:

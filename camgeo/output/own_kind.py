@@ -29,6 +29,7 @@ if TYPE_CHECKING:
     from camgeo.motions.stated import StatedMotion
     from camgeo.recipe.recipe import Order
     from camgeo.report.page.scene import Scene
+    from kin.law.contacts import Unit
     from kin.law.sources.motion import Kept
     from kin.numeric.arrays import Array
     from kin.numeric.check import Check
@@ -178,7 +179,7 @@ class Run(Generic[D, V]):
         for entry in report["files"]:
             verdict = verdicts.get(entry["path"])
             if verdict is not None:
-                entry.update(self.kind.rows(self.design, verdict))
+                entry.update(self.kind.rows(self.design.recipe, verdict))
         return {**report, **self.kind.section(self.design, self.figures)}
 
 
@@ -187,11 +188,13 @@ class OwnKind(Generic[D, V]):
     """What a kind of cams answers in a run.
 
     designed  the exact cam of a recipe; raises RecipeErrors where there is none
-    examined  checks that need no file, and all figures
-    limited   checks of the limits of a recipe
+    figures   all figures, in the order of reports
+    at_unit   unit of their places, mm or deg
+    checks    checks that need no file, by the figures
+    limited   checks of the limits of a recipe, by the figures and these checks
     told      what a report says besides
     section   sections of its own in a report
-    rows      entries of a judged file in a report
+    rows      entries of a judged file in a report, by the recipe
     foresee   refuses what is certain to be refused of a file; raises MissingExtraError where a package is missing
     maker     function that makes and judges a file of a design: (request, path)
     judged    kin's verdict on a file
@@ -204,11 +207,13 @@ class OwnKind(Generic[D, V]):
     """
 
     designed: Callable[[Any, Clock], D]
-    examined: Callable[[D, Clock], tuple[list[Check], tuple[Figure, ...]]]
+    figures: Callable[[D], Sequence[Figure]]
+    at_unit: Unit
+    checks: Callable[[D, Sequence[Figure]], Sequence[Check]]
     limited: Callable[[D, Sequence[Figure], Sequence[Check]], list[Check]]
     told: Callable[[D, Sequence[Figure]], Told]
     section: Callable[[D, Sequence[Figure]], dict[str, Any]]
-    rows: Callable[[D, V], dict[str, Any]]
+    rows: Callable[[Any, V], dict[str, Any]]
     foresee: Callable[[D, FileRequest], None]
     maker: Callable[[D, Clock], Callable[[FileRequest, Path], Made[V]]]
     judged: Judging[D, V]
@@ -320,7 +325,8 @@ class OwnKind(Generic[D, V]):
 
     def _examined(self, design: D, clock: Clock) -> tuple[list[Check], tuple[Figure, ...]]:
         with clock.stage("figures"):
-            return self.examined(design, clock)
+            figures = tuple(self.figures(design))
+            return [*self.checks(design, figures)], figures
 
     def _run(
         self,

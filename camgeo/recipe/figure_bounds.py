@@ -1,4 +1,4 @@
-"""Limits of a kind of cam with its own figures: `limits` as a mapping from a figure to its bounds."""
+"""Keys `limits` and `verify` of a kind of cam with its own figures: bounds of figures, and of the motion error."""
 
 from __future__ import annotations
 
@@ -40,6 +40,13 @@ def _bounds(name: str, about: str, kind: Kind) -> Field:
         )
     )
     return Field(name, Kind.TABLE, about, table=table)
+
+
+def verify_of(kind: Kind, about: str) -> Field:
+    """Key `verify` with the greatest motion error permitted, of a kind of values and described by `about`."""
+    implied = "what the tolerance implies"
+    error = Field("motion_error", kind, about, default=implied, above=0, at_most=MOST)
+    return mapping("verify", "how each file is judged", error)
 
 
 def check_bounds(limits: Values, there: Mapping[str, tuple[bool, str]], reader: Reader) -> None:

@@ -14,7 +14,7 @@ from kin.numeric.arrays import runs_of
 
 if TYPE_CHECKING:
     from kin.cylindrical.roller import Gauge
-    from kin.numeric.arrays import Array, Indices
+    from kin.numeric.arrays import Array
 
 PAIRS = 200_000  # of a triangle and an angle at a time
 
@@ -81,10 +81,3 @@ def _gives(gauge: Gauge, corners: Array, theta: Array) -> Array:
         whole = np.zeros(len(theta)), np.where(flags.any(axis=0), 1.0, -1.0)
         best = greatest((places[first, rows], places[last, rows]), whole)
     return best
-
-
-def spans_of(theta: Array, corners: Indices, more: float, period: float) -> tuple[Array, Array]:
-    """Least and greatest angle (t,) at which triangles (t, 3) count, by those of their corners (v,), rad."""
-    own = theta[corners]
-    own = own[:, :1] + np.remainder(own - own[:, :1] + 0.5 * period, period) - 0.5 * period
-    return own.min(axis=1) - more, own.max(axis=1) + more

@@ -15,21 +15,25 @@ import numpy as np
 from kin.cylindrical.crossings import Crossings
 from kin.cylindrical.gauge import gauges_of
 from kin.cylindrical.lifts import Lifts
-from kin.cylindrical.verdict import FlankVerdict, MotionError
+from kin.law.motion_error import MotionError
 from kin.numeric.angles import TURN
 from kin.numeric.arrays import runs_of
 from kin.numeric.check import ROUNDING, Check, at_most, failed
+from kin.numeric.errors import UnsettledError
 from kin.numeric.lengths import UNIT, length_words
 from kin.numeric.limits import limit_of
 from kin.numeric.records import replace
+from kin.turned.verdict import CONTOUR, MOTION, FlankVerdict
 
 if TYPE_CHECKING:
-    from kin.cylindrical.intent import Developed, DrumIntent, Limits
+    from kin.cylindrical.intent import DrumIntent
     from kin.cylindrical.roller import Gauge
     from kin.numeric.arrays import Array
+    from kin.numeric.limits import Limits
+    from kin.turned.files import Developed
 
-CONTOUR, MOTION = "contour", "motion"
 FINE = 0.05  # of the tolerance, within which what lies between points is known
+LOOSE = 2.0 * FINE  # of the tolerance: what is known less well counts in full
 MOST = 400_000  # points of a line
 GAP = 1e-6  # of the radius: ends of lines that are so close meet
 SLACK = 1e-6  # of a limit that follows from the steepest slope
@@ -72,7 +76,10 @@ def judged_line(
         return FlankVerdict(line.flank), [failed(CONTOUR, why, unit="mm", limit=tolerance)]
     if line.flank == "pitch":
         lifts, gauge = Lifts(drum.follower.law, drum.follower.turns), None
-        found = _measured_pitch(parts, drum, line.radius, tolerance)
+        try:
+            found = _measured_pitch(parts, drum, line.radius, tolerance)
+        except UnsettledError as error:
+            return FlankVerdict(line.flank), [failed(CONTOUR, str(error), unit="mm", limit=tolerance)]
     else:
         gauge = _gauge(drum, line)
         lifts = gauge.lifts
@@ -81,14 +88,18 @@ def judged_line(
         found = _measured_flank(_laid(parts, line.radius, step), drum, gauge, line.radius, bend)
     slack = ROUNDING * max(float(np.abs(part).max()) for part in parts)
     sure = f"true within {length_words(found.remainder, '.2g')} {UNIT}"
-    check = at_most(CONTOUR, found.off, tolerance, "mm", detail=f"{alone}; {sure}", slack=slack)
+    # lines that ask for more points than are looked at leave more open, which counts
+    loose = found.remainder > LOOSE * tolerance
+    off = found.off + found.remainder if loose else found.off
+    check = at_most(CONTOUR, off, tolerance, "mm", detail=f"{alone}; {sure}", slack=slack)
     checks = [replace(check, at=lifts.degrees(found.at))]
     follower = drum.follower
-    given = None if limits.motion is None else follower.told(limits.motion)
+    given = None if limits.motion is None else follower.in_unit(limits.motion)
     steep = found.steep * (1.0 + SLACK)
     limit, room = limit_of(lambda e: e * steep, given, tolerance, slack)
     if not drum.shortened or gauge is None:  # what an undercut loses at one radius, another carries
-        check = at_most(MOTION, found.motion.max, limit, follower.unit, detail=alone, slack=room)
+        most = found.motion.bound if loose else found.motion.max
+        check = at_most(MOTION, most, limit, follower.unit, detail=alone, slack=room)
         checks.append(replace(check, at=found.motion.at))
     return FlankVerdict(line.flank, found.motion, found.off), checks
 
@@ -161,6 +172,8 @@ def _measured_pitch(parts: list[Array], drum: DrumIntent, radius: float, toleran
     bends = max(float(lifts.bends(side).max()) for side in (-1, 1))
     swung = guide.axis(*lifts.at(np.linspace(0.0, lifts.period, TURNED * lifts.turns)))
     slowest = 1.0 - float((np.abs(swung.y1) / np.sqrt(radius**2 - swung.y**2)).max())
+    if not slowest > 0.0:
+        raise UnsettledError("the arm takes its roller round as fast as the cylinder turns: its path is not known")
     bend = guide.lever * (bends + lifts.steepest**2 * guide.lever * guide.bend) / slowest**3
     line = _laid(parts, radius, math.sqrt(8.0 * FINE * tolerance / max(bend, 1e-3 * radius)))
     theta = line.phi
@@ -176,11 +189,15 @@ def _measured_pitch(parts: list[Array], drum: DrumIntent, radius: float, toleran
     error = error / rate
     room = 0.125 * bend * float((np.diff(line.phi)[line.joined] ** 2).max(initial=0.0))
     k, worst = int(np.argmax(off)), int(np.argmax(np.abs(error)))
-    told = follower.told(1.0)
-    sizes = [float(np.abs(error).max()), room / guide.lever, float(error.min()), float(error.max())]
-    most, rest, least, greatest, rms = (told * size for size in (*sizes, float(np.sqrt(np.mean(error**2)))))
-    motion = MotionError(most, lifts.degrees(float(theta[worst])), rest, least, greatest, rms, follower.unit)
-    steep = told * math.hypot(1.0, guide.lever * lifts.steepest / slowest / radius) / float(np.abs(rate).min())
+    most, rest, rms = float(np.abs(error).max()), room / guide.lever, float(np.sqrt(np.mean(error**2)))
+    motion = MotionError(
+        most, lifts.degrees(float(theta[worst])), rest, float(error.min()), float(error.max()), rms, "mm"
+    ).scaled(follower.in_unit(1.0), follower.unit)
+    steep = (
+        follower.in_unit(1.0)
+        * math.hypot(1.0, guide.lever * lifts.steepest / slowest / radius)
+        / float(np.abs(rate).min())
+    )
     return _Measured(float(off[k]), float(theta[k]), room, motion, steep)
 
 
@@ -198,7 +215,6 @@ def _measured_flank(line: _Line, drum: DrumIntent, gauge: Gauge, radius: float, 
     low, high = min(float(between[least]), float(worst.height.min())), float(worst.height[most])
     value, at = (high, float(worst.theta[most])) if high >= -low else (-low, float(middle[least]))
     rms = float(np.sqrt(np.mean(worst.height**2)))
-    told = drum.follower.told(1.0) / gauge.lever
-    most_, rest, least_, greatest, rms = (told * size for size in (value, room, low, high, rms))
-    motion = MotionError(most_, gauge.lifts.degrees(at), rest, least_, greatest, rms, drum.follower.unit)
-    return _Measured(float(off[k]), float(worst.theta[k]), room, motion, told * gauge.by_line(1.0, radius))
+    per_mm = drum.follower.in_unit(1.0) / gauge.lever
+    motion = MotionError(value, gauge.lifts.degrees(at), room, low, high, rms, "mm").scaled(per_mm, drum.follower.unit)
+    return _Measured(float(off[k]), float(worst.theta[k]), room, motion, per_mm * gauge.by_line(1.0, radius))

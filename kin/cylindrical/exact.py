@@ -19,9 +19,6 @@ from kin.cylindrical.edges import Peak
 from kin.cylindrical.faces import BLANK, BORE, BOTTOM, FLOOR, TOP
 from kin.cylindrical.gauge import gauges_of
 from kin.cylindrical.judge import (
-    CONTOUR,
-    MOTION,
-    WATERTIGHT,
     Judged,
     contour_check,
     led_checks,
@@ -29,30 +26,33 @@ from kin.cylindrical.judge import (
     plain_checks,
     play_check,
     stretches,
-    volume_check,
 )
 from kin.cylindrical.play import exact_play
 from kin.cylindrical.smooth import BINS, Crossed, Smooth, look, off_flank
-from kin.cylindrical.verdict import DrumVerdict, FlankVerdict, MotionError
+from kin.cylindrical.volume import volume_within
+from kin.law.motion_error import MotionError
 from kin.numeric.angles import TURN
-from kin.numeric.check import ROUNDING, Check, about, failed
+from kin.numeric.check import ROUNDING, Check, failed
 from kin.numeric.errors import UnsettledError
 from kin.numeric.records import dataclass, replace
-from kin.read.checks import count_check, unread_check
+from kin.read.checks import count_check, enclosed_check
 from kin.read.errors import ReadError
 from kin.read.formats import format_of
 from kin.read.step.faces import RoundFace
 from kin.read.step.patch import Patch
 from kin.turned.bore import FINE
+from kin.turned.files import WATERTIGHT
+from kin.turned.verdict import CONTOUR, MOTION, FlankVerdict, TurnedVerdict
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
     from pathlib import Path
 
-    from kin.cylindrical.intent import DrumIntent, Limits
+    from kin.cylindrical.intent import DrumIntent
     from kin.cylindrical.roller import Gauge
     from kin.cylindrical.smooth import SeenSmooth
     from kin.numeric.arrays import Array, Mask
+    from kin.numeric.limits import Limits
     from kin.read.step.faces import Face
     from kin.read.step.shell import Shell
 
@@ -68,7 +68,7 @@ class _Sorted:
     flanks: dict[str, list[Smooth]]
 
 
-def verify_surfaces(path: Path, drum: DrumIntent, limits: Limits) -> DrumVerdict:
+def verify_surfaces(path: Path, drum: DrumIntent, limits: Limits) -> TurnedVerdict:
     """Judge a solid of exact surfaces by the suffix of its file, over all shaft angles.
 
     A file that is not read gets a verdict that says why. Raises OSError where the disk refuses, ValueError for a suffix
@@ -81,11 +81,11 @@ def verify_surfaces(path: Path, drum: DrumIntent, limits: Limits) -> DrumVerdict
         # faces that cannot be told from what they enclose show when they are looked at
         verdict = judge_shell(kind.shell(path), drum, limits, kind.name)
     except ReadError as error:
-        return DrumVerdict(kind.name, (about(unread_check("solid", error), path.name),))
-    return replace(verdict, checks=tuple(about(check, path.name) for check in verdict.checks))
+        return TurnedVerdict.unread(path, kind.name, "solid", error)
+    return verdict.about(path)
 
 
-def judge_shell(shell: Shell, drum: DrumIntent, limits: Limits, kind: str = "") -> DrumVerdict:
+def judge_shell(shell: Shell, drum: DrumIntent, limits: Limits, kind: str = "") -> TurnedVerdict:
     """Judge a solid of exact surfaces, mm, as its file has it."""
     gauges = gauges_of(drum)
     checks = [count_check(WATERTIGHT, shell.faults(limits.tolerance))]
@@ -107,10 +107,10 @@ def judge_shell(shell: Shell, drum: DrumIntent, limits: Limits, kind: str = "") 
             play, check = play_check(job, pinched, exact_play(drum, theta) - pinched, theta)
             checks.append(check)
         checks += led_checks(crossings)
-        checks.append(volume_check(drum, gauges, (shell.volume, shell.area), limits.tolerance))
+        checks.append(enclosed_check((shell.volume, shell.area), volume_within(drum, gauges), limits.tolerance))
     except UnsettledError as error:
         checks.append(failed(CONTOUR, str(error), unit="mm", limit=limits.tolerance))
-    return DrumVerdict(kind, tuple(checks), tuple(verdicts), play, shell.units_mm)
+    return TurnedVerdict(kind, tuple(checks), tuple(verdicts), play, shell.units_mm)
 
 
 def _flank(
@@ -143,12 +143,12 @@ def _flank(
 
 def _motion_error(seen: SeenSmooth, job: Judged, gauge: Gauge) -> MotionError:
     """Error of the motion where the flank is to carry the roller."""
-    low, high, told = seen.least, seen.out, job.told
+    low, high = seen.least, seen.out
     worst = high if high.value >= -low.value else Peak(-low.value, low.at, low.remainder)
     bound = max(high.value + high.remainder, low.remainder - low.value)
     rms = float(np.sqrt(np.mean(seen.holds[seen.carried] ** 2)))
-    left, place = told * max(bound - worst.value, 0.0), gauge.lifts.degrees(worst.at)
-    return MotionError(told * worst.value, place, left, told * low.value, told * high.value, told * rms, job.unit)
+    left, place = max(bound - worst.value, 0.0), gauge.lifts.degrees(worst.at)
+    return MotionError(worst.value, place, left, low.value, high.value, rms, "mm").scaled(job.per_mm, job.unit)
 
 
 # --- which face is which ----------------------------------------------------------------------------------------------

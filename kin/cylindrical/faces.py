@@ -19,7 +19,7 @@ from kin.cylindrical.roller import BESIDE, Place, Worst
 from kin.numeric.angles import TURN
 from kin.numeric.arrays import paired
 from kin.numeric.records import dataclass, replace
-from kin.turned.bore import edges_off_bore, off_bore
+from kin.turned.bore import corners_off_bore, edges_off_bore, inside_off_bore, middles
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -213,18 +213,11 @@ def _aways(stands: Stands, rest: Indices, bent: Indices) -> Array:
     body, gauge = stands.body, stands.gauge
     corners, off = body.corners[rest], _off_flank(gauge, stands.worst)
     away: Array = np.maximum.reduce([off[column] for column in corners.T])
-    within = _between(body, corners[bent])
+    within = middles(body.points[corners[bent]])
     about = np.repeat(body.phi[corners[bent, 0]], within.shape[1])
     inside = _off_flank(gauge, gauge.worst(within.reshape(-1, 3), about)).reshape(within.shape[:2])
     away[bent] = np.maximum(away[bent], inside.max(axis=1, initial=0.0))
     return away
-
-
-def _between(body: Body, corners: Indices) -> Array:
-    """Middles of the sides and of the whole (n, 4, 3) of triangles by their corners (n, 3)."""
-    places = body.points[corners]
-    sides = 0.5 * (places + np.roll(places, -1, axis=1))
-    return np.concatenate([sides, places.mean(axis=1, keepdims=True)], axis=1)
 
 
 def _inside(body: Body, drum: DrumIntent, name: str, corners: Indices) -> Array:
@@ -232,9 +225,7 @@ def _inside(body: Body, drum: DrumIntent, name: str, corners: Indices) -> Array:
     if name in {BOTTOM, TOP}:
         return np.zeros(len(corners))
     if name == BORE and drum.bore is not None:
-        flat = _between(body, corners)[..., :2].reshape(-1, 2)
-        off: Array = off_bore(drum.bore, flat).reshape(-1, 4).max(axis=1, initial=0.0)
-        return off
+        return inside_off_bore(drum.bore, body.points[corners])
     radius = drum.radius if name == BLANK else drum.floor
     flat = body.points[corners][..., :2]
     ends = [(flat[:, k], flat[:, k - 1]) for k in range(3)]
@@ -291,11 +282,7 @@ def _plain(body: Body, drum: DrumIntent) -> dict[str, Array]:
     if not (whole and track.sides[0] < 0):
         faces[TOP] = np.abs(z - drum.length)
     if drum.bore is not None:
-        reach = float(np.abs(drum.bore.contour.box).max()) * math.sqrt(2.0)
-        near = np.flatnonzero(r <= reach + 0.5 * (drum.radius - reach))
-        off = np.full(len(r), np.inf)
-        off[near] = off_bore(drum.bore, body.points[near, :2])
-        faces[BORE] = off
+        faces[BORE] = corners_off_bore(drum.bore, body.points, drum.radius)
     return faces
 
 

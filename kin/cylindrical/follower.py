@@ -18,11 +18,11 @@ from kin.numeric.records import dataclass
 from kin.turned.guide import Slide, Swing
 
 if TYPE_CHECKING:
-    from kin.law.contacts import Side
+    from kin.law.contacts import Side, Unit
     from kin.law.piecewise import Piecewise
     from kin.numeric.arrays import Array
     from kin.numeric.elementary import Jet
-    from kin.turned.guide import Guide, Unit
+    from kin.turned.guide import Guide
 
     Number = float | Array | Jet
 
@@ -116,7 +116,7 @@ class DrumFollower:
         """Position at lift 0: height of the roller's axis, mm, or the arm's angle, rad."""
         return self.level if self.arm is None else math.asin((self.level - self.arm.pivot) / self.arm.length)
 
-    def told(self, position: float) -> float:
+    def in_unit(self, position: float) -> float:
         """A position, mm or rad, in the unit in which it is reported."""
         return position if self.arm is None else math.degrees(position)
 

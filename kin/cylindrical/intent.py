@@ -1,4 +1,4 @@
-"""Intended drums and permitted errors: all that the judge of cylindrical cams takes beside the file itself.
+"""Intended drums: all that the judge of cylindrical cams takes beside the file itself and permitted errors.
 
 A drum reaches from z = 0 to its length, from its bore to its radius. Its track is cut from the radius inwards, by its
 depth, down to the floor, which is a cylinder about the axis. Lower flanks have the metal below and hold a roller from
@@ -120,28 +120,3 @@ class DrumIntent:
         if self.bore is None:
             return 0.0
         return float(nearest(self.bore.contour.as_arcs()[0], np.zeros((1, 2)))[1][0])
-
-
-@dataclass(frozen=True)
-class Developed:
-    """A line of a development, by its layer, unrolled at a `radius`, mm: x = radius phi over one period, y = z.
-
-    flank  "lower" or "upper", as the flank meets the cylinder of that radius; "pitch" for the roller's axis there
-    """
-
-    layer: str
-    radius: float
-    flank: Literal["lower", "upper", "pitch"]
-
-
-@dataclass(frozen=True)
-class Limits:
-    """Permitted errors: `tolerance` of the surfaces along their normals, mm; motion and play, mm, or rad of an arm.
-
-    `motion` is the greatest error of the position, `play` the greatest play or interference of the gauges. None stands
-    for the most that flanks within the tolerance can cause.
-    """
-
-    tolerance: float
-    motion: float | None = None
-    play: float | None = None

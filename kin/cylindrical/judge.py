@@ -17,7 +17,6 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from kin.cylindrical.contact import set_down, spans_of
 from kin.cylindrical.crossings import Crossings, Gap
 from kin.cylindrical.edges import look
 from kin.cylindrical.faces import BLANK, BORE, BOTTOM, FLOOR, TOP, Body, faces_of
@@ -27,19 +26,16 @@ from kin.cylindrical.lifts import degrees_over
 from kin.cylindrical.roller import Worst
 from kin.cylindrical.shoe import shoe_interference
 from kin.cylindrical.torn_edges import missing, triangles_at
-from kin.cylindrical.verdict import DrumVerdict, FlankVerdict, MotionError, Play
 from kin.cylindrical.volume import volume_within
+from kin.law.motion_error import MotionError, Play
 from kin.numeric.angles import degrees
-from kin.numeric.check import ROUNDING, Check, about, at_most, failed
+from kin.numeric.check import Check, at_most, failed
 from kin.numeric.errors import UnsettledError
 from kin.numeric.lengths import UNIT, amount_words, length_words
 from kin.numeric.limits import is_loose, limit_of, unlimited
 from kin.numeric.records import dataclass, replace
-from kin.read.checks import count_check, demand_same, enclosed_check, units_check, unread_check
-from kin.read.errors import ReadError
-from kin.read.files import read_mesh
-from kin.read.formats import format_of
-from kin.read.mesh.split import joined
+from kin.turned.files import closed_mesh, face_check, rounding_of, verify_lines, verify_mesh, volume_check
+from kin.turned.verdict import CONTOUR, ENDS, MOTION, PLAY, FlankVerdict, TurnedVerdict
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
@@ -47,73 +43,44 @@ if TYPE_CHECKING:
 
     from kin.cylindrical.edges import Peak, Seen
     from kin.cylindrical.faces import Stands
-    from kin.cylindrical.intent import Developed, DrumIntent, Limits
+    from kin.cylindrical.intent import DrumIntent
     from kin.cylindrical.roller import Gauge
+    from kin.law.contacts import Unit
     from kin.numeric.arrays import Array, Mask
+    from kin.numeric.limits import Limits
     from kin.read.mesh.checked import CheckedMesh
-    from kin.turned.guide import Unit
+    from kin.turned.files import Developed
 
-WATERTIGHT, MOTION, PLAY, CONTOUR, ENDS = "watertight", "motion", "form-closure", "contour", "ends"
 CROSSINGS, SHOE = "crossings", "shoe"
 OPEN = 0.25  # of the tolerance: what the proof may leave open, and is told
 SLACK = 1e-6  # of a limit that follows from the steepest slope
 
 
-def verify(path: Path, drum: DrumIntent, limits: Limits, units: float | None = None) -> DrumVerdict:
-    """Judge a solid of triangles by the suffix of its file, over all shaft angles.
-
-    `units`, mm, is the unit of a file that states none; None is mm. A file from which no mesh can be read gets a
-    verdict that says why. Raises OSError where the disk refuses, ValueError for a suffix of files without meshes.
-    """
-    kind = format_of(path)
-    try:
-        read = read_mesh(path, units)
-    except ReadError as error:
-        return DrumVerdict(kind.name, (about(unread_check("solid", error), path.name),))
-    verdict = judge_mesh(read, drum, limits, kind.name)
-    return replace(verdict, checks=tuple(about(check, path.name) for check in verdict.checks))
+def verify(path: Path, drum: DrumIntent, limits: Limits, units: float | None = None) -> TurnedVerdict:
+    """Judge a solid of triangles over all shaft angles; `units` and what is raised are those of `verify_mesh`."""
+    return verify_mesh(path, units, lambda read, kind: judge_mesh(read, drum, limits, kind))
 
 
 def verify_development(
     path: Path, drum: DrumIntent, lines: Sequence[Developed], limits: Limits, units: float | None = None
-) -> DrumVerdict:
+) -> TurnedVerdict:
     """Judge a development's DXF line by line, each for the radius at which it is unrolled, and for no other.
 
-    A line may go on beyond its period, as an overlap does. `units`, mm, is the unit of a file that states none. Raises
-    OSError where the disk refuses, UnitsError where the file states another unit than `units`, ValueError for a file
-    that is no DXF.
+    `units` and what is raised are those of `kin.turned.files.verify_lines`.
     """
     from kin.cylindrical.development import judged_line
-    from kin.read.drawing.straight import read_lines
 
-    kind = format_of(path)
-    if kind.name != "dxf":
-        raise ValueError(f"{path.name} is no DXF")
-    try:
-        stated, read = read_lines(path, [line.layer for line in lines])
-    except ReadError as error:
-        return DrumVerdict(kind.name, (about(unread_check(kind.contents, error), path.name),))
-    demand_same(stated, units, path)
-    mm = stated or units or drum.mm
-    widest = max((float(np.ptp(part[:, 0])) for parts in read.values() for part in parts), default=0.0)
-    turn = drum.follower.period * max((line.radius for line in lines), default=1.0)
-    checks = [units_check(stated, units, drum.mm, lambda: drum.mm * widest / turn)]
-    verdicts, drawn = [], []
-    for line in lines:
-        parts = [mm * part * ([-1.0, 1.0] if drum.mirrored else [1.0, 1.0]) for part in read[line.layer]]
-        drawn += [(line.layer, part) for part in parts]
-        flank, own = judged_line(parts, drum, line, limits)
-        verdicts.append(replace(flank, name=line.layer))
-        checks += [replace(check, surface=line.layer) for check in own]
-    told = tuple(about(check, path.name) for check in checks)
-    return DrumVerdict(kind.name, told, tuple(verdicts), units=mm, lines=tuple(drawn))
+    def judge(parts: list[Array], line: Developed) -> tuple[FlankVerdict, list[Check]]:
+        return judged_line(parts, drum, line, limits)
+
+    return verify_lines(path, lines, drum, drum.follower.period, judge, units=units)
 
 
 @dataclass(frozen=True, eq=False)
 class Judged:
     """A file being judged: what it is held against, by which gauges, and the rounding of its places, `slack`, mm.
 
-    Positions are mm along the path of the roller's axis; `told` gives them in the follower's unit, mm or deg.
+    Positions are mm along the path of the roller's axis; `per_mm` gives them in the follower's unit, mm or deg.
     """
 
     gauges: tuple[Gauge, ...]
@@ -127,20 +94,16 @@ class Judged:
         return self.drum.follower.unit
 
     @cached_property
-    def told(self) -> float:
+    def per_mm(self) -> float:
         """One mm of travel in the unit of positions."""
-        return self.drum.follower.told(1.0) / self.gauges[0].lever
+        return self.drum.follower.in_unit(1.0) / self.gauges[0].lever
 
 
-def judge_mesh(read: CheckedMesh, drum: DrumIntent, limits: Limits, kind: str = "") -> DrumVerdict:
+def judge_mesh(read: CheckedMesh, drum: DrumIntent, limits: Limits, kind: str = "") -> TurnedVerdict:
     """Judge a mesh, mm, as its file has it; corners that it keeps apart by less than the tolerance are joined."""
-    read, count, apart = joined(read, limits.tolerance)
-    body = Body.of(read.mesh, mirrored=drum.mirrored)
-    closed = count_check(WATERTIGHT, list(read.faults))
-    told = f"joined at {count} corners that the file keeps up to {length_words(apart, '.2g')} {UNIT} apart"
-    checks = [replace(closed, detail=told) if count else closed]
-    slack = read.rounding * math.sqrt(3.0) + ROUNDING * float(np.abs(body.points).max())
-    gauges = gauges_of(drum)
+    read, closed = closed_mesh(read, limits.tolerance)
+    body, checks = Body.of(read.mesh, mirrored=drum.mirrored), [closed]
+    slack, gauges = rounding_of(read, body.points), gauges_of(drum)
     verdicts, seen, play = [], [], None
     try:
         for gauge in gauges:
@@ -161,41 +124,18 @@ def judge_mesh(read: CheckedMesh, drum: DrumIntent, limits: Limits, kind: str = 
             play, check = _play(job, faces.stands, both, np.logical_and(*held))
             checks.append(check)
         checks += led_checks(crossings)
-        area = 0.5 * float(np.sqrt(sum(part * part for part in read.mesh.area_vectors)).sum())
-        checks.append(volume_check(drum, gauges, (read.mesh.volume, area), limits.tolerance))
+        checks.append(volume_check(read, volume_within(drum, gauges), limits.tolerance))
     except UnsettledError as error:
         checks.append(failed(CONTOUR, str(error), unit="mm", limit=limits.tolerance))
-    return DrumVerdict(kind, tuple(checks), tuple(verdicts), play, read.units_mm or 1.0, read.mesh)
-
-
-def positions(read: CheckedMesh, drum: DrumIntent, theta: Array) -> tuple[Array, Array]:
-    """Heights (n,), (n,), mm, of the roller's axis set down on the lower and on the upper flank at angles (n,), rad.
-
-    Of an arm they are its angles, rad. Of a rib the heights are those of the middle between its rollers; nan where
-    there is no such flank, or no contact.
-    The roller of an upper flank is the drum's own, without the clearance.
-    """
-    body = Body.of(read.mesh, mirrored=drum.mirrored)
-    found = {"lower": np.full(len(theta), np.nan), "upper": np.full(len(theta), np.nan)}
-    faces = faces_of(body, drum, gauges_of(drum), read.rounding)
-    for stands in faces.stands:
-        lift = stands.gauge.lifts.at(theta)[0]
-        gives = _own_gives(stands, drum, theta) / stands.gauge.lever
-        away = gives if stands.gauge.side < 0 else -gives
-        found[stands.gauge.name] = np.where(np.isfinite(gives), drum.follower.start + lift + away, np.nan)
-    return found["lower"], found["upper"]
+    return TurnedVerdict(kind, tuple(checks), tuple(verdicts), play, read.units_mm or 1.0, read.mesh)
 
 
 def plain_checks(job: Judged, off: Mapping[str, float]) -> list[Check]:
     """Checks of blank, floor, ends and bore, by how far each is off, mm: nan of one that is not there."""
-    drum, tolerance = job.drum, job.limits.tolerance
-    checks = []
+    drum, checks = job.drum, []
 
     def check(name: str, worst: float, detail: str) -> None:
-        if math.isnan(worst):
-            checks.append(failed(name, f"nothing is there; {detail}", unit="mm", limit=tolerance))
-        else:
-            checks.append(at_most(name, worst, tolerance, "mm", detail=detail, slack=job.slack))
+        checks.append(face_check(name, worst, job.limits.tolerance, detail, job.slack))
 
     check(BLANK, off[BLANK], f"from a radius of {length_words(drum.radius)} {UNIT}")
     if FLOOR in off:
@@ -270,22 +210,21 @@ def contour_check(job: Judged, proud: Peak, bare: Peak) -> tuple[Check, float]:
 
 def _motion_error(seen: Seen, held: Mask, job: Judged, gauge: Gauge) -> MotionError:
     """Error of the motion at the angles of the grid (n,) at which the flank is to carry the roller."""
-    told = job.told
     holds = np.where(held, seen.holds, np.inf)
     k = int(np.argmin(holds))
     least, most = float(holds[k]), seen.out.value
     bound = max(seen.out.value + seen.out.remainder, -float(seen.least[held].min()))
     worst, at = (-least, k * seen.grid.width) if -least > most else (most, seen.out.at)
     rms = float(np.sqrt(np.mean(seen.holds[held] ** 2)))
-    left, place = told * max(bound - worst, 0.0), gauge.lifts.degrees(at)
-    return MotionError(told * worst, place, left, told * least, told * most, told * rms, job.unit)
+    left, place = max(bound - worst, 0.0), gauge.lifts.degrees(at)
+    return MotionError(worst, place, left, least, most, rms, "mm").scaled(job.per_mm, job.unit)
 
 
 def motion_check(job: Judged, motion: MotionError, gauge: Gauge, free: tuple[tuple[float, float], ...] = ()) -> Check:
     """Check of the motion on a flank, in the unit of positions, beside stretches, degrees, where it carries nothing."""
-    told, tolerance, given = job.told, job.limits.tolerance, _given(job, job.limits.motion)
-    limit, room = limit_of(lambda e: told * _implied(gauge, e), given, tolerance, job.slack)
-    worst = assured(motion.max, motion.remainder, told * tolerance) if given is None else motion.bound
+    per_mm, tolerance, given = job.per_mm, job.limits.tolerance, _given(job, job.limits.motion)
+    limit, room = limit_of(lambda e: per_mm * _implied(gauge, e), given, tolerance, job.slack)
+    worst = assured(motion.max, motion.remainder, per_mm * tolerance) if given is None else motion.bound
     detail = f"true within {amount_words(motion.remainder, job.unit, '.2g')}" if motion.remainder else ""
     if free:
         longest = max(high - low for low, high in free)
@@ -293,14 +232,14 @@ def motion_check(job: Judged, motion: MotionError, gauge: Gauge, free: tuple[tup
         detail = f"{detail}; {beside}" if detail else beside
     check = at_most(MOTION, worst, limit, job.unit, detail=detail, slack=room)
     check = replace(check, at=motion.at)
-    stroke = job.drum.follower.told(gauge.lifts.stroke)
-    loose = given is None and is_loose(limit, told * tolerance, lambda: stroke)
+    stroke = job.drum.follower.in_unit(gauge.lifts.stroke)
+    loose = given is None and is_loose(limit, per_mm * tolerance, lambda: stroke)
     return unlimited(check) if loose else check
 
 
 def _given(job: Judged, limit: float | None) -> float | None:
     """A limit that is given, mm or rad, in the unit of positions."""
-    return None if limit is None else job.drum.follower.told(limit)
+    return None if limit is None else job.drum.follower.in_unit(limit)
 
 
 def assured(value: float, remainder: float, tolerance: float) -> float:
@@ -316,15 +255,6 @@ def _implied(gauge: Gauge, tolerance: float) -> float:
 def placed(check: Check, theta: float, turns: int = 1) -> Check:
     """The check with its shaft angle, rad, over so many turns of the motion."""
     return replace(check, at=degrees_over(theta, turns) if math.isfinite(theta) else None)
-
-
-def _own_gives(stands: Stands, drum: DrumIntent, theta: Array) -> Array:
-    """How far the drum's own roller is kept from its place at angles (n,), rad, mm, above 0 away from the metal."""
-    gauge = replace(stands.gauge, radius=drum.follower.radius)
-    body = stands.body
-    corners = body.corners[stands.touched]
-    reach = math.asin(min(1.0, gauge.reach / gauge.inner))
-    return set_down(gauge, body.points[corners], spans_of(body.phi, corners, reach, gauge.lifts.period), theta)
 
 
 def _held(job: Judged, stands: Stands, seen: Seen) -> Array:
@@ -358,19 +288,19 @@ def play_check(job: Judged, pinched: Array, own: Array, theta: Array) -> tuple[P
     `pinched` is by how much the gauges do not fit, and `own` the follower's own play (n,), mm, at angles (n,), rad.
     """
     k = int(np.argmax(np.abs(pinched)))
-    own = own * job.told
+    own = own * job.per_mm
     least, most = int(np.argmin(own)), int(np.argmax(own))
     places = [job.gauges[0].lifts.degrees(float(theta[k])) for k in (least, most)]
-    play = Play(float(own[least]), places[0], float(own[most]), places[1], len(own), job.unit)
+    play = Play(float(own[least]), places[0], float(own[most]), places[1], job.unit)
 
     def implied(tolerance: float) -> float:
-        return job.told * sum(_implied(gauge, tolerance) for gauge in job.gauges)
+        return job.per_mm * sum(_implied(gauge, tolerance) for gauge in job.gauges)
 
     limit, room = limit_of(implied, _given(job, job.limits.play), job.limits.tolerance, job.slack)
     told = f"the follower's own play is {_between(play)}"
     if play.least < 0.0:
         told += f": it is pinched by up to {amount_words(-play.least, job.unit, '.3g')}"
-    check = at_most(PLAY, job.told * float(abs(pinched[k])), limit, job.unit, detail=told, slack=room)
+    check = at_most(PLAY, job.per_mm * float(abs(pinched[k])), limit, job.unit, detail=told, slack=room)
     return play, placed(check, float(theta[k]), job.drum.follower.turns)
 
 
@@ -400,8 +330,3 @@ def _between(play: Play) -> str:
     if play.unit == "mm":
         return f"{length_words(play.least)} to {length_words(play.most)} {UNIT}"
     return f"{play.least:.6g} to {play.most:.6g} {play.unit}"
-
-
-def volume_check(drum: DrumIntent, gauges: tuple[Gauge, ...], measured: tuple[float, float], tolerance: float) -> Check:
-    """Check of a solid's volume, mm^3, by that of its surface within a tolerance, mm; `measured` is with its area."""
-    return enclosed_check(measured, volume_within(drum, gauges), tolerance)

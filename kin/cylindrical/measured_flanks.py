@@ -339,7 +339,7 @@ def _ring(flank: Measured, own: Indices, drum: DrumIntent) -> Ring:
     covariance = sd**2 * np.linalg.pinv(base.T @ base)
     own_sd = np.sqrt(np.maximum(np.einsum("nk,kl,nl->n", at, covariance, at), 0.0))
     moved = 1.0 / np.interp(steps, theta[np.argsort(theta % TURN)] % TURN, way[np.argsort(theta % TURN)], period=TURN)
-    scale = drum.follower.told(1.0)
+    scale = drum.follower.in_unit(1.0)
     return Ring(
         flank.number,
         float(np.median(flank.r[own])),

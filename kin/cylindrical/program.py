@@ -16,29 +16,29 @@ import numpy as np
 
 from kin.cylindrical.gauge import gauges_of
 from kin.cylindrical.intent import Groove
-from kin.cylindrical.judge import CONTOUR, Judged, assured, motion_check
-from kin.cylindrical.verdict import DrumVerdict, FlankVerdict, MotionError
-from kin.numeric.check import ROUNDING, Check, about, at_most, failed
+from kin.cylindrical.judge import Judged, assured, motion_check
+from kin.law.motion_error import MotionError
+from kin.numeric.check import ROUNDING, Check, at_most, failed
 from kin.numeric.errors import UnsettledError
 from kin.numeric.lengths import UNIT, length_words
 from kin.numeric.records import replace
-from kin.read.checks import count_check, unread_check
-from kin.read.errors import ReadError
+from kin.read.checks import count_check
 from kin.turned.checks import Work, astray, cleared_check, cutter_check, depth_check, feed_check, rapid_check
 from kin.turned.cutters import END, finest_on, left_on
-from kin.turned.moves import passes_of, read_turned
+from kin.turned.files import verify_moves
+from kin.turned.verdict import CONTOUR, FlankVerdict, TurnedVerdict
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
     from pathlib import Path
 
-    from kin.cylindrical.intent import DrumIntent, Limits
+    from kin.cylindrical.intent import DrumIntent
     from kin.cylindrical.lifts import Lifts
     from kin.cylindrical.roller import Gauge
     from kin.numeric.arrays import Array, Indices
+    from kin.numeric.limits import Limits
     from kin.turned.checks import Cutting
     from kin.turned.cutters import Left
-    from kin.turned.guide import Unit
     from kin.turned.moves import Pass, TurnedProgram
 
 SAME = 1e-9  # mm: sizes that differ by less are one
@@ -61,18 +61,14 @@ class _Path(NamedTuple):
     remainder: float = 0.0
 
 
-def verify_program(path: Path, drum: DrumIntent, cutting: Cutting, limits: Limits) -> DrumVerdict:
+def verify_program(path: Path, drum: DrumIntent, cutting: Cutting, limits: Limits) -> TurnedVerdict:
     """Judge a program by what its cutter leaves; raises OSError where the disk refuses."""
-    try:
-        program = read_turned(path)
-    except ReadError as error:
-        return DrumVerdict("gcode", (about(unread_check("program", error), path.name),))
-    if drum.mirrored:
-        program = replace(program, moves=tuple(move.mirrored() for move in program.moves))
-    passes = list(passes_of(program.moves, drum.radius))
-    checks, flanks = judged_passes(program, passes, drum, cutting, limits)
-    told = tuple(about(check, path.name) for check in checks)
-    return DrumVerdict("gcode", told, tuple(flanks), units=program.units_mm)
+
+    def judge(program: TurnedProgram, passes: list[Pass]) -> TurnedVerdict:
+        checks, flanks = judged_passes(program, passes, drum, cutting, limits)
+        return TurnedVerdict("gcode", tuple(checks), tuple(flanks), units=program.units_mm)
+
+    return verify_moves(path, drum.radius, judge, mirrored=drum.mirrored)
 
 
 def judged_passes(
@@ -150,7 +146,7 @@ def _flank(job: Judged, gauge: Gauge, passes: list[Pass], cutting: Cutting) -> t
     detail = f"{words}; true within {length_words(remainder, '.2g')} {UNIT}"
     value = worst if worst > tolerance else assured(worst, remainder, tolerance)
     check = replace(at_most(CONTOUR, value, tolerance, "mm", detail=detail, slack=job.slack), at=_angle(at))
-    motion = _motion(gauge, left, job.told, job.unit)
+    motion = _motion(gauge, left).scaled(job.per_mm, job.unit)
     return FlankVerdict(gauge.name, motion, worst), [
         check,
         motion_check(job, motion, gauge),
@@ -171,8 +167,8 @@ def _extremes(left: Left) -> tuple[float, float, float]:
     return worst, float(left.theta[k]), max(bound - worst, 0.0)
 
 
-def _motion(gauge: Gauge, left: Left, told: float, unit: Unit) -> MotionError:
-    """Error of the roller on what is left: it stands where that holds it highest along its length."""
+def _motion(gauge: Gauge, left: Left) -> MotionError:
+    """Error of the roller on what is left, mm: it stands where that holds it highest along its length."""
     rows = max(int(np.searchsorted(left.rho, gauge.outer, side="right")), 2)
     lean = 1.0 / upright_at(gauge, left.theta, left.rho[:rows, None])
     held = (left.off[:rows] * lean).max(axis=0)
@@ -183,15 +179,8 @@ def _motion(gauge: Gauge, left: Left, told: float, unit: Unit) -> MotionError:
     k = int(np.argmax(np.abs(held)))
     worst = float(abs(held[k]))
     share = 0.5 * (np.append(np.diff(left.theta), 0.0) + np.append(0.0, np.diff(left.theta))) / gauge.lifts.period
-    return MotionError(
-        told * worst,
-        _angle(left.theta[k]),
-        told * max(most - worst, -least - worst, 0.0),
-        told * float(held.min()),
-        told * float(held.max()),
-        told * float(np.sqrt((share * held**2).sum())),
-        unit,
-    )
+    rms, rest = float(np.sqrt((share * held**2).sum())), max(most - worst, -least - worst, 0.0)
+    return MotionError(worst, _angle(left.theta[k]), rest, float(held.min()), float(held.max()), rms, "mm")
 
 
 def upright_at(gauge: Gauge, theta: Array, rho: Array) -> Array:
@@ -222,11 +211,10 @@ def _by_path(job: Judged, gauge: Gauge, passes: list[Pass], cutting: Cutting) ->
     check = replace(at_most(CONTOUR, most, tolerance, "mm", detail=detail, slack=job.slack), at=_angle(at))
     least, most = min(each.least for each in off), max(each.most for each in off)
     least, most = (least, most) if gauge.side < 0 else (-most, -least)
-    told = job.told
     # what is off across the roller's path, or too wide, moves it by no more than a flank that is off by as much
     by_flank = gauge.by_error(beside + remainder + beyond) if beside + remainder + beyond else 0.0
-    rms = told * max(abs(least), abs(most))
-    motion = MotionError(told * worst, _angle(at), told * by_flank, told * least, told * most, rms, job.unit)
+    rms = max(abs(least), abs(most))
+    motion = MotionError(worst, _angle(at), by_flank, least, most, rms, "mm").scaled(job.per_mm, job.unit)
     return FlankVerdict(gauge.name, motion, worst), [
         check,
         motion_check(job, motion, gauge),

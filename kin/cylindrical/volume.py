@@ -19,16 +19,12 @@ ANGLES = 1440  # of a turn
 RADII = 16  # by Gauss' rule from the floor to the blank
 
 
-def exact_volume(drum: DrumIntent, gauges: tuple[Gauge, ...]) -> float:
-    """Volume, mm^3, of a drum with the envelopes of all rollers as its flanks, trimmed where they are undercut."""
-    return volume_within(drum, gauges)[0]
-
-
 def volume_within(drum: DrumIntent, gauges: tuple[Gauge, ...]) -> tuple[float, float]:
     """The exact volume of a drum, mm^3, and what half as many angles change of it.
 
     Where a groove crosses itself what it takes is not smooth, and its quadrature errs by the square of the step: by a
-    third of that change. It is 0 for a motion of one turn, which is smooth.
+    third of that change. The change is left at 0 for a motion of one turn: of a surface that has kinks at most, such a
+    quadrature errs by far less than a volume may be off. Neither is proved.
     """
     bore = 0.0 if drum.bore is None else drum.bore.contour.area
     floor, radius, length = drum.floor, drum.radius, drum.length

@@ -16,21 +16,25 @@ import numpy as np
 from kin.indexing.holding import by_error
 from kin.indexing.intent import SIDES
 from kin.indexing.rollers import REACH, Rollers
-from kin.indexing.verdict import CONTOUR, MOTION, FlankVerdict, MotionError
 from kin.indexing.volume import swept_stretches
+from kin.law.motion_error import MotionError
 from kin.numeric.angles import TURN, degrees
 from kin.numeric.arrays import runs_of
 from kin.numeric.check import ROUNDING, Check, at_most, failed
 from kin.numeric.lengths import UNIT, length_words
 from kin.numeric.limits import limit_of
 from kin.numeric.records import dataclass, replace
+from kin.turned.verdict import CONTOUR, MOTION, FlankVerdict
 
 if TYPE_CHECKING:
-    from kin.indexing.intent import Developed, IndexIntent, Limits
+    from kin.indexing.intent import IndexIntent
     from kin.numeric.arrays import Array, Mask
+    from kin.numeric.limits import Limits
+    from kin.turned.files import Developed
 
 FINE = 0.05  # of the tolerance, within which what lies between points is known
 MOST = 200_000  # points of a line
+STEEP = 1e3  # mm per mm: a line that rises faster is divided by its length, as it may cross a track at one angle
 ANGLES = 720  # of a turn, at which it is looked whether a line is missing
 BESIDE = 0.1  # of a roller's radius: a line that is farther off is another one
 
@@ -86,7 +90,9 @@ def judged_line(
     errors = np.degrees(found.errors)
     k = int(np.abs(errors).argmax())
     sizes = float(np.abs(errors[k])), degrees(float(found.angles[k])), math.degrees(found.room)
-    motion = MotionError(*sizes, float(errors.min()), float(errors.max()), float(np.sqrt(np.mean(errors**2))))
+    motion = MotionError(
+        *sizes, float(errors.min()), float(errors.max()), float(np.sqrt(np.mean(errors**2))), "deg", "sampled"
+    )
     given = None if limits.motion is None else math.degrees(limits.motion)
     cost = math.degrees(found.cost)
     limit, room = limit_of(lambda e: e * cost, given, limits.tolerance, slack)
@@ -134,15 +140,20 @@ def _laid(parts: list[Array], rollers: Rollers, radius: float) -> _Line:
     """Points of the lines round their cylinder, so close that what lies between them is known."""
     intent = rollers.intent
     steps = [np.diff(part, axis=0) for part in parts]
-    climb = max(float((np.abs(way[:, 1]) / np.maximum(np.abs(way[:, 0]), 1e-9)).max(initial=0.0)) for way in steps)
-    climb = min(climb, 1e3) * radius
+    along, up = np.abs(np.concatenate(steps)).T
+    steep = up > STEEP * along
+    climb = radius * float((up[~steep] / np.maximum(along[~steep], 1e-9)).max(initial=0.0))
     reach = REACH * float(rollers.radii.max())
     bend = 2.0 * (radius**2 + climb**2) + 2.0 * reach * radius
-    step = math.sqrt(8.0 * FINE * rollers.tolerance * 2.0 * intent.roller / bend)
-    step = max(step, sum(float(np.abs(way[:, 0]).sum()) for way in steps) / radius / MOST)
+    fine = 8.0 * FINE * rollers.tolerance * 2.0 * intent.roller
+    step = max(math.sqrt(fine / bend), float(along.sum()) / radius / MOST)
+    # of a steep line by its share: twice its squared length, and the bend of its angle beside which is nothing
+    long = np.hypot(up, along) * math.sqrt(2.0 * (1.0 + reach / radius / STEEP**2))
+    short = max(math.sqrt(fine), float(long[steep].sum()) / MOST)
+    counts = np.where(steep, np.ceil(long / short), np.maximum(np.ceil(along / (radius * step)), 1.0)).astype(np.intp)
+    room = 0.125 * max(bend * step**2, short**2 if steep.any() else 0.0)
     rows, joined = [], []
-    for part in parts:
-        count = np.maximum(np.ceil(np.abs(np.diff(part[:, 0])) / (radius * step)), 1.0).astype(np.intp)
+    for part, count in zip(parts, np.split(counts, np.cumsum([len(way) for way in steps])[:-1]), strict=True):
         own, number = runs_of(count)
         share = number / count[own]
         rows.append(np.concatenate([part[own] + share[:, None] * np.diff(part, axis=0)[own], part[-1:]]))
@@ -150,7 +161,7 @@ def _laid(parts: list[Array], rollers: Rollers, radius: float) -> _Line:
     flat = np.concatenate(rows)
     phi = flat[:, 0] / radius
     points = np.stack([radius * np.cos(phi), radius * np.sin(phi), flat[:, 1] - intent.height], axis=-1)
-    return _Line(points, np.concatenate(joined)[:-1], 0.125 * bend * step**2)
+    return _Line(points, np.concatenate(joined)[:-1], room)
 
 
 def _flank(parts: list[Array], rollers: Rollers, line: Developed) -> _Measured:

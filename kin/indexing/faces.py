@@ -16,7 +16,7 @@ import numpy as np
 
 from kin.contour.nearest import nearest
 from kin.numeric.records import dataclass
-from kin.turned.bore import edges_off_bore, off_bore
+from kin.turned.bore import corners_off_bore, edges_off_bore, inside_off_bore
 
 if TYPE_CHECKING:
     from kin.contour.holes import Hole
@@ -115,7 +115,7 @@ def plain_offs(body: Body, intent: IndexIntent, limits: tuple[float, float]) -> 
     z = body.points[:, 2]
     corners = {BOTTOM: np.abs(z - low), TOP: np.abs(z - high)}
     if intent.bore is not None:
-        corners[BORE] = _off_bore(body, intent.bore)
+        corners[BORE] = corners_off_bore(intent.bore, body.points, intent.form.radius)
     offs = {name: off[body.corners].max(axis=1) for name, off in corners.items()}
     for name, depth in ((BLANK, 0.0), (FLOOR, intent.form.depth)):
         off = np.abs(body.depth - depth)[body.corners].max(axis=1)
@@ -124,10 +124,8 @@ def plain_offs(body: Body, intent: IndexIntent, limits: tuple[float, float]) -> 
         offs[name] = off
     if intent.bore is not None:
         near = np.flatnonzero(offs[BORE] <= tolerance)
-        places = body.points[body.corners[near]][..., :2]
-        middles = np.concatenate([0.5 * (places + np.roll(places, -1, axis=1)), places.mean(axis=1, keepdims=True)], 1)
-        inside = nearest(intent.bore.contour.as_arcs()[0], middles.reshape(-1, 2))[1].reshape(-1, 4)
-        offs[BORE][near] = np.maximum(offs[BORE][near], inside.max(axis=1, initial=0.0))
+        inside = inside_off_bore(intent.bore, body.points[body.corners[near]])
+        offs[BORE][near] = np.maximum(offs[BORE][near], inside)
     return offs
 
 
@@ -185,13 +183,3 @@ def within_bore(bore: Hole, places: Array) -> float:
     if not inside.any():
         return 0.0
     return float(nearest(bore.contour.as_arcs()[0], near[inside])[1].max())
-
-
-def _off_bore(body: Body, bore: Hole) -> Array:
-    """Distances (v,), mm, of corners from the outline of a bore, seen along z; infinite for those far outside it."""
-    reach = 1.1 * math.sqrt(2.0) * float(np.abs(bore.contour.box).max())
-    off = np.full(len(body.points), np.inf)
-    near = np.hypot(body.points[:, 0], body.points[:, 1]) <= reach
-    if near.any():
-        off[near] = off_bore(bore, body.points[near, :2])
-    return off

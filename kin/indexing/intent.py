@@ -1,4 +1,4 @@
-"""Intended indexing cams and permitted errors: all that the judge takes beside the file itself.
+"""Intended indexing cams: all that the judge takes beside the file itself and permitted errors.
 
 A cam reaches from z = 0 to its length, from its bore to its blank. Rollers without ends, on the turret's side of the
 cam, sweep a groove in the blank, down to the floor, which is a layer of the form. What is left between the rollers is a
@@ -8,11 +8,10 @@ rib that winds from one end to the other. The metal below a roller has the lower
 from __future__ import annotations
 
 import math
-from typing import TYPE_CHECKING, Literal
+from typing import TYPE_CHECKING
 
 import numpy as np
 
-from kin.indexing.forms import Barrel, Globoid
 from kin.numeric.angles import TURN
 from kin.numeric.records import dataclass
 
@@ -21,8 +20,6 @@ if TYPE_CHECKING:
     from kin.indexing.forms import Form
     from kin.law.contacts import Side
     from kin.law.piecewise import Piecewise
-
-__all__ = ["SIDES", "Barrel", "Developed", "Globoid", "IndexIntent", "Limits"]
 
 SIDES: dict[str, Side] = {"lower": -1, "upper": 1}  # of a roller on which a flank lies
 VELOCITY = 1e-9  # rad per rad: a jump of the velocity below this is rounding
@@ -84,25 +81,3 @@ class IndexIntent:
     def radius(self, side: Side) -> float:
         """Radius, mm, of the roller whose flank has the metal below it (-1) or above it (1)."""
         return self.roller + (self.clearance if side > 0 else 0.0)
-
-
-@dataclass(frozen=True)
-class Developed:
-    """A line of a barrel's development, by its layer: a flank unrolled at a `radius`, mm: x = radius phi, y = z."""
-
-    layer: str
-    radius: float
-    flank: Literal["lower", "upper"]
-
-
-@dataclass(frozen=True)
-class Limits:
-    """Permitted errors: `tolerance` of the surfaces along their normals, mm; motion and play of the turret, rad.
-
-    `motion` is the greatest error of the position, `play` the greatest play or interference of the gauges. None stands
-    for the most that flanks within the tolerance can cause.
-    """
-
-    tolerance: float
-    motion: float | None = None
-    play: float | None = None

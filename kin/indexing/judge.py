@@ -22,19 +22,16 @@ from kin.indexing.faces import BLANK, BORE, BOTTOM, FLOOR, TOP, Body, plain_offs
 from kin.indexing.holding import angles_for, by_error, held
 from kin.indexing.intent import SIDES
 from kin.indexing.rollers import Rollers
-from kin.indexing.verdict import CONTOUR, MOTION, FlankVerdict, IndexVerdict, MotionError, Play
 from kin.indexing.volume import exact_volume
+from kin.law.motion_error import MotionError, Play
 from kin.numeric.angles import TURN, degrees
-from kin.numeric.check import ROUNDING, Check, about, at_most, failed
+from kin.numeric.check import Check, at_most, failed
 from kin.numeric.errors import UnsettledError
 from kin.numeric.lengths import UNIT, amount_words, length_words
 from kin.numeric.limits import is_loose, limit_of, unlimited
 from kin.numeric.records import dataclass, replace
-from kin.read.checks import count_check, demand_same, enclosed_check, units_check, unread_check
-from kin.read.errors import ReadError
-from kin.read.files import read_mesh
-from kin.read.formats import format_of
-from kin.read.mesh.split import joined
+from kin.turned.files import closed_mesh, face_check, rounding_of, verify_lines, verify_mesh, volume_check
+from kin.turned.verdict import CONTOUR, ENDS, MOTION, PLAY, FlankVerdict, TurnedVerdict
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -43,73 +40,43 @@ if TYPE_CHECKING:
     from kin.indexing.contour import Edged
     from kin.indexing.faces import Faces
     from kin.indexing.holding import Held
-    from kin.indexing.intent import Developed, IndexIntent, Limits
+    from kin.indexing.intent import IndexIntent
     from kin.law.contacts import Side
     from kin.numeric.arrays import Array, Indices, Mask
+    from kin.numeric.limits import Limits
     from kin.read.mesh.checked import CheckedMesh
+    from kin.turned.files import Developed
 
-WATERTIGHT, PLAY, ENDS = "watertight", "form-closure", "ends"
 OPEN = 0.25  # of the tolerance: what the proof may leave open, and is told
 
 
-def verify(path: Path, intent: IndexIntent, limits: Limits, units: float | None = None) -> IndexVerdict:
-    """Judge a solid of triangles by the suffix of its file, over all shaft angles.
-
-    `units`, mm, is the unit of a file that states none; None is mm. A file from which no mesh can be read gets a
-    verdict that says why. Raises OSError where the disk refuses, ValueError for a suffix of files without meshes.
-    """
-    kind = format_of(path)
-    try:
-        read = read_mesh(path, units)
-    except ReadError as error:
-        return IndexVerdict(kind.name, (about(unread_check("solid", error), path.name),))
-    verdict = judge_mesh(read, intent, limits, kind.name)
-    return replace(verdict, checks=tuple(about(check, path.name) for check in verdict.checks))
+def verify(path: Path, intent: IndexIntent, limits: Limits, units: float | None = None) -> TurnedVerdict:
+    """Judge a solid of triangles over all shaft angles; `units` and what is raised are those of `verify_mesh`."""
+    return verify_mesh(path, units, lambda read, kind: judge_mesh(read, intent, limits, kind))
 
 
 def verify_development(
     path: Path, intent: IndexIntent, lines: Sequence[Developed], limits: Limits, units: float | None = None
-) -> IndexVerdict:
+) -> TurnedVerdict:
     """Judge a development's DXF line by line, each for the radius at which it is unrolled, and for no other.
 
-    A line may go on beyond one turn, as an overlap does. `units`, mm, is the unit of a file that states none. Raises
-    OSError where the disk refuses, UnitsError where the file states another unit than `units`, ValueError for a file
-    that is no DXF and for a globoid.
+    `units` and what is raised are those of `kin.turned.files.verify_lines`; ValueError for a globoid too.
     """
     from kin.indexing.development import judged_line
-    from kin.read.drawing.straight import read_lines
 
-    kind = format_of(path)
-    if kind.name != "dxf":
-        raise ValueError(f"{path.name} is no DXF")
     for line in lines:
         intent.form.developed(line.radius)
-    try:
-        stated, read = read_lines(path, [line.layer for line in lines])
-    except ReadError as error:
-        return IndexVerdict(kind.name, (about(unread_check(kind.contents, error), path.name),))
-    demand_same(stated, units, path)
-    mm = stated or units or intent.mm
-    widest = max((float(np.ptp(part[:, 0])) for parts in read.values() for part in parts), default=0.0)
-    turn = TURN * max((line.radius for line in lines), default=1.0)
-    checks = [units_check(stated, units, intent.mm, lambda: intent.mm * widest / turn)]
-    verdicts, drawn = [], []
-    for line in lines:
-        parts = [mm * part * ([-1.0, 1.0] if intent.mirrored else [1.0, 1.0]) for part in read[line.layer]]
-        drawn += [(line.layer, part) for part in parts]
-        flank, own = judged_line(parts, intent, line, limits)
-        verdicts.append(flank)
-        checks += [replace(check, surface=line.layer) for check in own]
-    told = tuple(about(check, path.name) for check in checks)
-    return IndexVerdict(kind.name, told, tuple(verdicts), units=mm, lines=tuple(drawn))
+
+    def judge(parts: list[Array], line: Developed) -> tuple[FlankVerdict, list[Check]]:
+        return judged_line(parts, intent, line, limits)
+
+    return verify_lines(path, lines, intent, TURN, judge, units=units)
 
 
-def judge_mesh(read: CheckedMesh, intent: IndexIntent, limits: Limits, kind: str = "") -> IndexVerdict:
+def judge_mesh(read: CheckedMesh, intent: IndexIntent, limits: Limits, kind: str = "") -> TurnedVerdict:
     """Judge a mesh, mm, as its file has it; corners that it keeps apart by less than the tolerance are joined."""
-    read, count, apart = joined(read, limits.tolerance)
-    closed = count_check(WATERTIGHT, list(read.faults))
-    told = f"joined at {count} corners that the file keeps up to {length_words(apart, '.2g')} {UNIT} apart"
-    checks = [replace(closed, detail=told) if count else closed]
+    read, closed = closed_mesh(read, limits.tolerance)
+    checks = [closed]
     flanks: list[FlankVerdict] = []
     play = None
     try:
@@ -125,12 +92,10 @@ def judge_mesh(read: CheckedMesh, intent: IndexIntent, limits: Limits, kind: str
         if one is not None and other is not None:
             play, check = play_of(job.rollers, limits, job.slack, (one, other))
             checks.append(check)
-        area = 0.5 * float(np.sqrt(sum(part * part for part in read.mesh.area_vectors)).sum())
-        exact = exact_volume(job.rollers)
-        checks.append(enclosed_check((read.mesh.volume, area), exact, limits.tolerance))
+        checks.append(volume_check(read, exact_volume(job.rollers), limits.tolerance))
     except UnsettledError as error:
         checks.append(failed(CONTOUR, str(error), unit="mm", limit=limits.tolerance))
-    return IndexVerdict(kind, tuple(checks), tuple(flanks), play, read.units_mm or 1.0, read.mesh)
+    return TurnedVerdict(kind, tuple(checks), tuple(flanks), play, read.units_mm or 1.0, read.mesh)
 
 
 @dataclass(frozen=True, eq=False)
@@ -149,7 +114,7 @@ class _Judged:
         """Sort a mesh by faces, and set the rollers beside its corners."""
         rollers = Rollers(intent, limits.tolerance)
         body = Body.of(read.mesh, intent)
-        slack = read.rounding * math.sqrt(3.0) + ROUNDING * float(np.abs(body.points).max())
+        slack = rounding_of(read, body.points)
         tolerance = limits.tolerance + slack
         both = limits.tolerance, tolerance
         rest = np.flatnonzero(_least(plain_offs(body, intent, both)) > tolerance)
@@ -168,14 +133,10 @@ class _Judged:
 
     def plain(self) -> list[Check]:
         """Checks of blank, floor, ends and bore."""
-        intent, off, tolerance = self.rollers.intent, self.faces.off, self.limits.tolerance
-        checks = []
+        intent, off, checks = self.rollers.intent, self.faces.off, []
 
         def check(name: str, worst: float, detail: str) -> None:
-            if math.isnan(worst):
-                checks.append(failed(name, f"nothing is there; {detail}", unit="mm", limit=tolerance))
-            else:
-                checks.append(at_most(name, worst, tolerance, "mm", detail=detail, slack=self.slack))
+            checks.append(face_check(name, worst, self.limits.tolerance, detail, self.slack))
 
         check(BLANK, off[BLANK], f"from a radius of {length_words(intent.form.radius)} {UNIT}")
         ends = (intent.form.deepest(place, intent.roller) for place in (intent.inner, intent.outer))
@@ -251,8 +212,17 @@ class _Judged:
         reach = np.stack([known.along[edged.start], known.along[edged.last]])
         beside = (reach.max(axis=0) >= intent.inner) & (reach.min(axis=0) <= intent.outer)
         slope = np.minimum(known.slope[edged.start], known.slope[edged.last])
-        most = (edged.worst.open - edged.worst.excess)[beside] / slope[beside]
+        most = pushed_by((edged.worst.open - edged.worst.excess)[beside], slope[beside])
         return peak._replace(remainder=max(0.0, float(most.max(initial=-math.inf)) - peak.value))
+
+
+def pushed_by(depth: Array, slope: Array) -> Array:
+    """Angles (n,), rad, by which edges push the turret at most, by their depth, mm^2, and its slope by the angle.
+
+    The depth is convex in the angle. Where its slope is 0 a roller touches with its very side, and nothing bounds it.
+    """
+    with np.errstate(divide="ignore", invalid="ignore"):
+        return np.where(slope > 0.0, depth / slope, np.where(depth > 0.0, np.inf, -np.inf))
 
 
 def _least(offs: dict[str, Array]) -> Array:
@@ -283,9 +253,8 @@ def motion_error(holds: Held, pushed: Peak) -> MotionError:
     bound = max(pushed.value + pushed.remainder, most, -float(holds.between.min()))
     worst, at = (-least, k * TURN / len(holds.at)) if -least > most else (most, pushed.at)
     rms = float(np.sqrt(np.mean(holds.at**2)))
-    left = max(bound - worst, 0.0)
-    worst, left, least, most, rms = (math.degrees(one) for one in (worst, left, least, most, rms))
-    return MotionError(worst, degrees(at), left, least, most, rms)
+    found = MotionError(worst, degrees(at), max(bound - worst, 0.0), least, most, rms, "deg")
+    return found.scaled(math.degrees(1.0), "deg")
 
 
 def motion_check(rollers: Rollers, motion: MotionError, limits: Limits, slack: float, cost: float) -> Check:
@@ -308,7 +277,7 @@ def play_of(rollers: Rollers, limits: Limits, slack: float, flanks: tuple[Held, 
     own = -np.degrees(lower.own + upper.own)
     least, most = int(own.argmin()), int(own.argmax())
     places = [degrees(k * TURN / count) for k in (least, most)]
-    play = Play(float(own[least]), places[0], float(own[most]), places[1], count)
+    play = Play(float(own[least]), places[0], float(own[most]), places[1], "deg")
     cost = math.degrees(sum(by_error(rollers, side) for side in SIDES.values()))
     given = None if limits.play is None else math.degrees(limits.play)
     limit, room = limit_of(lambda e: e * cost, given, limits.tolerance, slack)

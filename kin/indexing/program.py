@@ -24,26 +24,26 @@ from kin.indexing.intent import SIDES
 from kin.indexing.judge import contour_check, motion_check, motion_error, play_of
 from kin.indexing.motion import STEPS
 from kin.indexing.rollers import Rollers
-from kin.indexing.verdict import CONTOUR, FlankVerdict, IndexVerdict
 from kin.numeric.angles import TURN, degrees
 from kin.numeric.arrays import runs_of
-from kin.numeric.check import ROUNDING, Check, about, failed
+from kin.numeric.check import ROUNDING, Check, failed
 from kin.numeric.errors import UnsettledError
 from kin.numeric.lengths import UNIT, length_words
 from kin.numeric.records import dataclass, replace
-from kin.read.checks import count_check, unread_check
-from kin.read.errors import ReadError
+from kin.read.checks import count_check
 from kin.turned.checks import Work, astray, cleared_check, cutter_check, depth_check, feed_check, rapid_check
 from kin.turned.cutters import cells_within, corners_of, finest_on, left_on
-from kin.turned.moves import passes_of, read_turned
+from kin.turned.files import verify_moves
+from kin.turned.verdict import CONTOUR, FlankVerdict, TurnedVerdict
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
     from pathlib import Path
 
-    from kin.indexing.intent import IndexIntent, Limits
+    from kin.indexing.intent import IndexIntent
     from kin.law.contacts import Side
     from kin.numeric.arrays import Array, Mask
+    from kin.numeric.limits import Limits
     from kin.turned.checks import Cutting
     from kin.turned.cutters import Along, Left
     from kin.turned.guide import Axis, Swing
@@ -57,18 +57,11 @@ NEAR = 0.05  # of the tolerance, by which a block may bend away from the roller'
 MOST_PLACES = 4_000_000  # at which the cutter is held against one
 
 
-def verify_program(path: Path, intent: IndexIntent, cutting: Cutting, limits: Limits) -> IndexVerdict:
+def verify_program(path: Path, intent: IndexIntent, cutting: Cutting, limits: Limits) -> TurnedVerdict:
     """Judge a program by what its cutter leaves; raises OSError where the disk refuses, ValueError for a globoid."""
     intent.form.guide(intent.height, intent.start)
-    try:
-        program = read_turned(path)
-    except ReadError as error:
-        return IndexVerdict("gcode", (about(unread_check("program", error), path.name),))
-    if intent.mirrored:
-        program = replace(program, moves=tuple(move.mirrored() for move in program.moves))
     job = _Judged(Rollers(intent, limits.tolerance), cutting, limits)
-    verdict = job.verdict(program, list(passes_of(program.moves, intent.form.radius)))
-    return replace(verdict, checks=tuple(about(check, path.name) for check in verdict.checks))
+    return verify_moves(path, intent.form.radius, job.verdict, mirrored=intent.mirrored)
 
 
 def finest_told(intent: IndexIntent, cutting: Cutting) -> float:
@@ -205,7 +198,7 @@ class _Judged:
         """Rounding of the judge, mm."""
         return ROUNDING * (self.rollers.intent.form.radius + self.rollers.intent.length)
 
-    def verdict(self, program: TurnedProgram, passes: list[Pass]) -> IndexVerdict:
+    def verdict(self, program: TurnedProgram, passes: list[Pass]) -> TurnedVerdict:
         """All checks, the flanks, and the play between them."""
         intent, cutting, tolerance = self.rollers.intent, self.cutting, self.limits.tolerance
         first, last = _Way(self.rollers).span
@@ -219,11 +212,11 @@ class _Judged:
         try:
             checks += [self._ways(program, passes), feed_check(program, work, cutting)]
             if not passes:
-                return IndexVerdict("gcode", (*checks, unseen), units=program.units_mm)
+                return TurnedVerdict("gcode", (*checks, unseen), units=program.units_mm)
             checks.append(depth_check(program, passes, work, cutting, tolerance))
             if not all(check.ok for check in checks[1:3]):
                 unseen = replace(unseen, detail="what is left is not looked at on such ways")
-                return IndexVerdict("gcode", (*checks, unseen), units=program.units_mm)
+                return TurnedVerdict("gcode", (*checks, unseen), units=program.units_mm)
             checks.append(cleared_check(passes, work, cutting.radius))
             seen = []
             for name, side in SIDES.items():
@@ -236,7 +229,7 @@ class _Judged:
                 checks.append(check)
         except UnsettledError as error:
             checks.append(failed(CONTOUR, str(error), unit="mm", limit=tolerance))
-        return IndexVerdict("gcode", tuple(checks), tuple(flanks), play, program.units_mm)
+        return TurnedVerdict("gcode", tuple(checks), tuple(flanks), play, program.units_mm)
 
     def _flank(self, name: str, track: _Track, passes: list[Pass]) -> tuple[FlankVerdict, Held | None, list[Check]]:
         """Verdict on a flank by what the cutter leaves of it, what that holds, and its checks."""
@@ -261,7 +254,7 @@ class _Judged:
         if not np.isfinite(holds.between).all():
             angle = degrees(int(np.argmin(np.isfinite(holds.between))) * TURN / ANGLES)
             return unknown(f"the turret touches nothing at an angle of {angle:.6g} degrees")
-        motion = motion_error(holds, pushed)
+        motion = replace(motion_error(holds, pushed), extremes="sampled")
         cost = by_error(self.rollers, track.side)
         checks = [check, motion_check(self.rollers, motion, self.limits, self.slack, cost)]
         return FlankVerdict(name, motion, worst), holds, checks

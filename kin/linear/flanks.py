@@ -8,9 +8,9 @@ from typing import TYPE_CHECKING, NamedTuple
 import numpy as np
 
 from kin.contour.arcs import Arcs
+from kin.law.motion_error import MotionError, Play
 from kin.linear.contact import Held
 from kin.linear.motion import errors, intended
-from kin.linear.verdict import MotionError, Play
 from kin.numeric.records import replace
 
 if TYPE_CHECKING:
@@ -76,19 +76,12 @@ def judged_motion(held: Held, span: tuple[float, float]) -> MotionError:
     """Motion error over all inputs of the span, mm or degrees; RestError and UnsettledError as `errors` raises them."""
     least, most = errors(held, span)
     unit = held.follower.unit
-    scale = 180.0 / math.pi if unit == "deg" else 1.0
     u = np.linspace(*span, STEPS + 1)
     off = held.reached(u) - intended(held.follower, u)
     worst = most if abs(most.error) >= abs(least.error) else least
-    return MotionError(
-        max=scale * abs(worst.error),
-        at=worst.at,
-        remainder=scale * max(least.remainder, most.remainder),
-        least=scale * least.error,
-        most=scale * most.error,
-        rms=scale * float(np.sqrt(np.mean(off * off))),
-        unit=unit,
-    )
+    rest, rms = max(least.remainder, most.remainder), float(np.sqrt(np.mean(off * off)))
+    found = MotionError(abs(worst.error), worst.at, rest, least.error, most.error, rms, unit)
+    return found.scaled(math.degrees(1.0), unit) if unit == "deg" else found
 
 
 def judged_play(lower: Held, upper: Held, span: tuple[float, float]) -> Play:

@@ -21,7 +21,6 @@ from kin.linear.follower import Stem
 from kin.numeric.elementary import Jet, cos, sin, sqrt
 
 if TYPE_CHECKING:
-    from kin.law.contacts import Side
     from kin.law.piecewise import Side as KnotSide
     from kin.linear.follower import LinearFollower
     from kin.numeric.arrays import Array
@@ -92,10 +91,3 @@ def frame(follower: LinearFollower, u: Array, knot_side: KnotSide = 1) -> FrameR
         rates = np.stack([1.0 + guide.side * path * np.sin(psi), path * np.cos(psi)], axis=-1)
     tangent = rates / sigma[:, None]
     return FrameRows(follower.centre(u, lift), tangent, left(tangent), sigma, jets.omega.c[0], jets.tan.c[0])
-
-
-def flank(follower: LinearFollower, u: Array, side: Side = -1, clearance: float = 0.0) -> Array:
-    """Points (n, 2), mm, touched at inputs u (n,), mm, by a roller larger by `clearance`, mm: untrimmed envelope."""
-    rows = frame(follower, u)
-    points: Array = rows.centre + side * (follower.radius + clearance) * rows.normal
-    return points

@@ -1,4 +1,4 @@
-"""Intended plates and permitted errors: all that the judge of linear cams takes beside the file itself."""
+"""Intended plates: all that the judge of linear cams takes beside the file itself and permitted errors."""
 
 from __future__ import annotations
 
@@ -68,17 +68,3 @@ class PlateIntent:
     closed: bool = True
     thickness: float | None = None
     layers: tuple[Layer, ...] = ()
-
-
-@dataclass(frozen=True)
-class Limits:
-    """Permitted errors: `tolerance` of contours, mm; greatest motion error, and greatest play or interference.
-
-    Motion and play are in mm or degrees, by the guide. None stands for the most that flanks within the tolerance can
-    cause. Ends in drawings within `gap`, mm, are joined; None for the readers' own gap.
-    """
-
-    tolerance: float
-    motion: float | None = None
-    play: float | None = None
-    gap: float | None = None

@@ -18,7 +18,7 @@ from kin.linear.flanks import Metal, held_by, judged_motion, judged_play
 from kin.linear.outline import Flank, groove_strayed, plate_strayed
 from kin.linear.parallels import motion_limits
 from kin.linear.verdict import FlankVerdict, PlateVerdict
-from kin.numeric.check import ROUNDING, Check, about, at_most, failed, less_sure
+from kin.numeric.check import ROUNDING, Check, at_most, failed, less_sure
 from kin.numeric.errors import CamgeoError, UnsettledError
 from kin.numeric.lengths import UNIT, length_words
 from kin.numeric.limits import SPLINE_ERROR, SPLINE_SHARE, is_loose, limit_of, unlimited
@@ -30,7 +30,6 @@ from kin.read.checks import (
     demand_same,
     thickness_check,
     units_check,
-    unread_check,
 )
 from kin.read.errors import ReadError
 from kin.read.files import read_drawing, read_solid
@@ -43,11 +42,12 @@ if TYPE_CHECKING:
 
     from kin.contour.contour import Contour
     from kin.contour.holes import Hole
+    from kin.law.motion_error import MotionError, Play
     from kin.linear.follower import LinearFollower
-    from kin.linear.intent import Limits, PlateIntent
+    from kin.linear.intent import PlateIntent
     from kin.linear.outline import Strayed
-    from kin.linear.verdict import MotionError, Play
     from kin.numeric.arrays import Array
+    from kin.numeric.limits import Limits
     from kin.read.formats import AnySolid
     from kin.read.layers import Layer
 
@@ -88,11 +88,10 @@ def verify(path: Path, plate: PlateIntent, limits: Limits, units: float | None =
     try:
         file = READERS.get(kind.contents, _refused)(path, plate, flanks, limits, units)
     except _NoGrooveError as error:
-        return PlateVerdict(kind.name, (about(failed("readable", str(error)), path.name),))
+        return PlateVerdict(kind.name, (failed("readable", str(error)),)).about(path)
     except ReadError as error:
-        return PlateVerdict(kind.name, (about(unread_check(kind.contents, error), path.name),))
-    verdict = _judged(file, plate, flanks, limits, kind.name)
-    return replace(verdict, checks=tuple(about(check, path.name) for check in verdict.checks))
+        return PlateVerdict.unread(path, kind.name, kind.contents, error)
+    return _judged(file, plate, flanks, limits, kind.name).about(path)
 
 
 def judge_chains(chains: Sequence[ClosedContour], plate: PlateIntent, limits: Limits, kind: str = "") -> PlateVerdict:

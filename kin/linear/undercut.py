@@ -21,7 +21,6 @@ from kin.numeric.interval import sin_cos
 from kin.numeric.records import dataclass
 
 if TYPE_CHECKING:
-    from kin.law.contacts import Side
     from kin.law.piecewise import Side as KnotSide
     from kin.linear.follower import LinearFollower
     from kin.numeric.arrays import Array, Indices, Mask
@@ -50,25 +49,16 @@ class Cut:
 
 
 def cuts(
-    follower: LinearFollower,
-    side: Side = -1,
-    clearance: float = 0.0,
-    beyond: tuple[float, float] = (0.0, 0.0),
-    *,
-    tangent: bool = True,
+    follower: LinearFollower, beyond: tuple[float, float] = (0.0, 0.0), *, tangent: bool = True
 ) -> tuple[Cut, ...]:
     """Undercut parts of a flank, local or global, by rising input; empty where all of the envelope is flank.
 
     The flank goes on by `beyond`, mm, along its end tangents or level, and what meets it there counts. Of an endless
     motion the parts of one period are given.
     """
-    own = (follower if side < 0 else follower.reflected()).larger(clearance)
-    if own.radius == 0.0 or _is_graph(own):
+    if follower.radius == 0.0 or _is_graph(follower):
         return ()
-    found = [_cut(own, *part) for part in _parts(Pitch(own, beyond, tangent))]
-    if side > 0:
-        found = [Cut(cut.begin, cut.end, (cut.corner[0], -cut.corner[1]), cut.lost, cut.lost_at) for cut in found]
-    return tuple(found)
+    return tuple(_cut(follower, *part) for part in _parts(Pitch(follower, beyond, tangent)))
 
 
 def _is_graph(follower: LinearFollower) -> bool:

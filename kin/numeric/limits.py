@@ -2,10 +2,10 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
 from typing import TYPE_CHECKING
 
 from kin.numeric.lengths import amount_words, marked
+from kin.numeric.records import dataclass, replace
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -19,6 +19,21 @@ SPLINE_SHARE, SPLINE_ERROR = 1e-3, 1e-9
 # radius), and so many times what the tolerance gives at a pressure angle of 0.
 MOST_SHARE, STEEP = 0.1, 10.0
 NO_LIMIT = "no limit follows from the tolerance here; give verify.motion_error"
+
+
+@dataclass(frozen=True)
+class Limits:
+    """Permitted errors: `tolerance` of surfaces along their normals, mm; of the position, and of play or interference.
+
+    `motion` and `play` are in the unit of the follower's position: mm or rad of a turning body, mm or degrees of a
+    plate. None stands for the most that surfaces within the tolerance can cause. Ends in a plate's drawing that are
+    within `gap`, mm, are joined; None for the readers' own gap.
+    """
+
+    tolerance: float
+    motion: float | None = None
+    play: float | None = None
+    gap: float | None = None
 
 
 def is_loose(limit: float, direct: float, size: Callable[[], float], share: float = MOST_SHARE) -> bool:

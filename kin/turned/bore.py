@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -17,7 +18,31 @@ if TYPE_CHECKING:
 FINE = 1e-2  # of the tolerance, to which edges are measured
 
 
-def off_bore(bore: Hole, points: Array) -> Array:
+def corners_off_bore(bore: Hole, points: Array, blank: float) -> Array:
+    """Distances (n,), mm, of corners (n, 3), mm, from the outline of a bore in a blank of a radius, mm, seen along z.
+
+    They are infinite for corners that are nearer to the blank than to any part of the bore.
+    """
+    r, reach = np.hypot(points[:, 0], points[:, 1]), float(np.abs(bore.contour.box).max()) * math.sqrt(2.0)
+    near = r <= reach + 0.5 * (blank - reach)
+    off = np.full(len(r), np.inf)
+    off[near] = _off(bore, points[near, :2])
+    return off
+
+
+def inside_off_bore(bore: Hole, triangles: Array) -> Array:
+    """Greatest distances (t,), mm, of middles of sides and of triangles (t, 3, 3), mm, from the outline of a bore."""
+    off = _off(bore, middles(triangles[..., :2]).reshape(-1, 2))
+    return np.asarray(off.reshape(-1, 4).max(axis=1, initial=0.0))
+
+
+def middles(triangles: Array) -> Array:
+    """Middles (t, 4, k) of the sides and of the whole of triangles (t, 3, k)."""
+    sides = 0.5 * (triangles + np.roll(triangles, -1, axis=1))
+    return np.concatenate([sides, triangles.mean(axis=1, keepdims=True)], axis=1)
+
+
+def _off(bore: Hole, points: Array) -> Array:
     """Distances (n,), mm, of points (n, 2), mm, from the outline of a bore; many may be the same."""
     distinct, number = _once(points)
     off: Array = nearest(bore.contour.as_arcs()[0], distinct)[1][number]

@@ -51,7 +51,7 @@ LONGEST = 0.02  # rad of a block: Newton's method is at home within
 STEPS, CONED, HOPS = 2, 3, 60  # of Newton's method in a block, of a cone, and blocks on the way to the nearest
 MOST_POINTS, ROOMY = 4_000_000, 1.1  # of points to begin with, and times as many where cutters are more askew
 FINER = 1.02  # of the finest tolerance: as near as it is found
-TINY = 1e-9
+TINY = 1e-9  # mm, for nothing where it divides: a point may lie on the axis of a cutter
 ROUNDING = 1e-6  # of a part of a turn
 ROOM = 0.01  # rad
 TILT, LEAN = 0.4, 1.6  # rad, times the root of the tolerance, mm: how much a cutter is askew on chords, to begin with
@@ -654,7 +654,7 @@ def _nearest(points: _Points, one: Pass, turn: float, gauge: Track, cutter: _Cut
     off = (far - cutter.radius - (along - one.z) * cutter.growth) * cutter.upright
     y, v, far, a, off, along = (values.reshape(shape) for values in (y, v, far, a, off, along))
     tilt = np.remainder(points.theta - a + 0.5 * TURN, TURN) - 0.5 * TURN
-    sine, cosine, slopes = np.sin(tilt), np.cos(tilt), []
+    sine, cosine, slopes, far = np.sin(tilt), np.cos(tilt), [], np.maximum(far, TINY)
     for outward, across, up in (points.by_theta, points.by_rho):
         moved = (y * (outward * sine + across * cosine) + v * up) / far
         slopes.append((moved - (outward * cosine - across * sine) * cutter.growth) * cutter.upright)
@@ -679,7 +679,7 @@ def _least(one: Pass, block: Indices, places: tuple[Array, Array, Array], cutter
         slope = beside * rate + up * rise
         bend = rate**2 + rise**2 - beside * across * da**2
         if cutter.growth:
-            far = np.hypot(beside, up)
+            far = np.maximum(np.hypot(beside, up), TINY)
             bend += cutter.growth * far * along * da**2 - (slope / far) ** 2
             slope -= cutter.growth * far * across * da
         share = np.clip(share - slope / np.where(bend > 0.0, bend, 1.0), 0.0, 1.0)

@@ -16,7 +16,7 @@ where e is T turned back by a right angle on a trailing arm, which points from t
 from __future__ import annotations
 
 import math
-from typing import TYPE_CHECKING, Generic, Literal, NamedTuple, TypeAlias, TypeVar
+from typing import TYPE_CHECKING, Generic, NamedTuple, TypeAlias, TypeVar
 
 import numpy as np
 
@@ -34,8 +34,6 @@ if TYPE_CHECKING:
 Number = TypeVar("Number", Array, Jet, Ball, BallJet)
 Enclosed = TypeVar("Enclosed", Jet, Ball, BallJet)
 QUARTER = 0.5 * math.pi
-
-Unit: TypeAlias = Literal["mm", "deg"]
 
 
 class Axis(NamedTuple, Generic[Number]):

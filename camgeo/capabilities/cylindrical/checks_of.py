@@ -12,8 +12,8 @@ from camgeo.capabilities.cylindrical.crossings import wall_between
 from camgeo.capabilities.cylindrical.development import radii
 from camgeo.capabilities.cylindrical.figures import CONTACT_PRESSURE, at_angle, bears, steepest
 from camgeo.capabilities.cylindrical.flank import distance
-from camgeo.capabilities.cylindrical.keys import DEVELOPMENT
-from camgeo.measures.placed import figure_check, limits_and_wall
+from camgeo.formats.turned import DEVELOPMENT
+from camgeo.measures.placed import figure_check
 from camgeo.measures.rule_remark import RuleRemark
 from camgeo.measures.units import in_units
 from camgeo.recipe.figures import LEAST_WALL, PRESSURE_ANGLE
@@ -87,11 +87,6 @@ def walls(design: DrumDesign) -> list[tuple[float, str, str]]:
             (recipe.floor - reach, "between the bore and the floor", "raise cam.radius {}, or narrow the bore")
         )
     return found
-
-
-def limits_held(design: DrumDesign, figures: Sequence[Figure], checks: Sequence[Check]) -> list[Check]:
-    """Checks of the figures that the recipe limits, those of the least wall among them."""
-    return limits_and_wall(design.recipe.limits, figures, checks, "deg")
 
 
 # --- remarks ----------------------------------------------------------------------------------------------------------

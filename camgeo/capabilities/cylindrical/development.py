@@ -17,9 +17,9 @@ from camgeo.capabilities.cylindrical.undercut import cut_at
 from camgeo.fit.bound import Bound
 from camgeo.fit.nodes import ToleranceError
 from camgeo.fit.parted import LOOKS, looks_of, parted
-from kin.cylindrical.intent import Developed
 from kin.numeric.angles import TURN
 from kin.numeric.interval import Ball
+from kin.turned.files import Developed
 
 if TYPE_CHECKING:
     from pathlib import Path

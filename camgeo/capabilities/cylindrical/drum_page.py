@@ -43,7 +43,9 @@ def looks() -> tuple[str, str]:
 
 def panels(design: DrumDesign, report: dict[str, Any]) -> str:
     """Return the HTML of development, map and figures."""
-    return f'<div class="charts-and-figures">{_charts(design)}{_figures(report)}</div>'
+    return (
+        f'<div class="charts-and-figures">{_charts(design)}{tables.figures(report["drum"]["figures"], "at", "°")}</div>'
+    )
 
 
 @lru_cache(maxsize=1)
@@ -126,16 +128,6 @@ def _played(design: DrumDesign, of: Sequence[Shell], digits: int) -> dict[str, A
         "flat": [flat_scale(design) * mm, FIELD, flat_scale(design) * recipe.height, LEFT, TOP],
         "map": [LEFT, FIELD],
     }
-
-
-def _figures(report: dict[str, Any]) -> str:
-    rows = []
-    for entry in report["drum"]["figures"]:
-        at = f"{entry['at']:.2f}°" if "at" in entry else ""
-        value = entry["value"]
-        shown = tables.number(value) if value is not None and math.isfinite(value) else tables.NONE
-        rows.append(tables.named_row(entry["name"], shown, entry["unit"], at))
-    return f"<section><h2>Figures</h2>{tables.html_table('Figures', ('figure', 'value', 'unit', 'at'), rows)}</section>"
 
 
 def _plots(design: DrumDesign) -> list[Plot]:

@@ -25,8 +25,8 @@ if TYPE_CHECKING:
     from kin.cylindrical.unknown import Drum
     from kin.follower.measured import MeasuredDwell
     from kin.follower.recognised import Programme
+    from kin.law.contacts import Unit
     from kin.numeric.arrays import Array
-    from kin.turned.guide import Unit
 
 Flank = Literal["lower", "upper", "middle"]
 
@@ -81,7 +81,7 @@ class FollowedDrum:
     @property
     def scale(self) -> float:
         """Factor by which positions, mm or rad, become numbers of the reported unit."""
-        return self.run.follower.told(1.0)
+        return self.run.follower.in_unit(1.0)
 
     @property
     def lever(self) -> float:

@@ -3,15 +3,14 @@
 from __future__ import annotations
 
 import math
-from itertools import pairwise
 from typing import TYPE_CHECKING
 
 import numpy as np
 
 from camgeo.capabilities.cylindrical.bends import bends
-from camgeo.common.rounding import upward
 from camgeo.curve.curve import CurveError
-from camgeo.fit.nodes import ToleranceError
+from camgeo.fit.cells import columns as columns_at
+from camgeo.fit.cells import fewest_cells
 from kin.numeric.angles import TURN
 from kin.numeric.records import dataclass
 
@@ -24,9 +23,6 @@ LOOKS = 360  # parts of a turn, and
 BLOCKS = 8  # of the depth, over each of which second derivatives are bounded
 SPLITS = 6  # rounds by which a place without a bound is halved
 MOST_ROWS = 4000
-MOST_CELLS = 1_000_000
-COARSER = 1.2  # times the tolerance that the number of cells calls for, in a remedy
-MORE = 1.5  # times the fewest cells so far, from which on more rows are not tried
 NONE = np.zeros(0)
 SAME = 1e-12  # rad: shaft angles so near are one
 SAME_ROW = 1e-6  # mm: so are rows
@@ -103,11 +99,15 @@ def grid_of(
     knots = knots[np.append(np.diff(knots) > SAME, True)]
     look, found = bends_over(flank, knots, low, high)
     turn = widest(high, tolerance) / found.sweep
-    count, step = _rows(found, np.diff(look), turn, high - low, tolerance)
+
+    def step_of(count: int) -> Array:
+        return np.minimum(found.step((high - low) / count, tolerance), turn)
+
+    count, step = fewest_cells(step_of, look, MOST_ROWS, tolerance)
     r = np.linspace(low, high, count + 1)
     r = np.unique(np.concatenate([r, rows]))
     r = r[np.append(True, np.diff(r) > SAME_ROW)]
-    theta = _columns(knots, look, step)
+    theta = columns_at(knots, look, step)
     while True:  # between places of unlike steps a column may be too wide
         h1, cells = np.diff(theta), _touched(look, found, theta)
         off = np.maximum(cells.off(h1, (high - low) / count), sag(high, np.minimum(cells.sweep * h1, math.pi)))
@@ -115,37 +115,6 @@ def grid_of(
         if not wide.any():
             return Grid(theta, r, float(off.max()))
         theta = np.sort(np.concatenate([theta, 0.5 * (theta[:-1] + theta[1:])[wide]]))
-
-
-def _rows(found: Bends, wide: Array, turn: Array, depth: float, tolerance: float) -> tuple[int, Array]:
-    """Number of rows that needs the fewest cells, and the greatest width of columns (n,), rad."""
-    best: tuple[float, int, Array] | None = None
-    count = 1
-    while count <= MOST_ROWS:
-        step = np.minimum(found.step(depth / count, tolerance), turn)
-        if step.min() > 0.0:
-            cells = count * float(np.sum(wide / step))
-            if best is None or cells < best[0]:
-                best = cells, count, step
-            elif cells > MORE * best[0]:
-                break
-        count += max(1, count // 8)
-    if best is None or best[0] > MOST_CELLS:
-        least = tolerance * (4.0 if best is None else COARSER * best[0] / MOST_CELLS)
-        problem = f"a flank within {tolerance:.3g} mm would take too many triangles"
-        raise ToleranceError(f"{problem}; give at least {upward(least, 3)} mm", least)
-    return best[1], best[2]
-
-
-def _columns(knots: Array, look: Array, step: Array) -> Array:
-    """Shaft angles, rad, from knot to knot, whose distances are about `step` (n,) between places (n + 1,)."""
-    along = np.concatenate([[0.0], np.cumsum(np.diff(look) / step)])
-    at = np.interp(knots, look, along)
-    found = []
-    for k, (low, high) in enumerate(pairwise(at.tolist())):
-        count = max(1, math.ceil(high - low))
-        found.append(np.append(knots[k], np.interp(np.linspace(low, high, count + 1)[1:-1], along, look)))
-    return np.append(np.concatenate(found), knots[-1])
 
 
 def _touched(look: Array, found: Bends, theta: Array) -> Bends:

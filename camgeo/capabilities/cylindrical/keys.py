@@ -4,22 +4,19 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from camgeo.formats.options import RECIPE_UNITS, SOLID_UNITS, TOLERANCE
-from camgeo.formats.turned import program_files
+from camgeo.formats.turned import program_files, turned_files
 from camgeo.motions.inputs import Input
 from camgeo.motions.motion import motion_field
 from camgeo.part import bore
 from camgeo.part.keyway import FEATURE as KEYWAY
 from camgeo.part.part import DENSITY
 from camgeo.recipe.export import export_of
-from camgeo.recipe.figure_bounds import limits_of
+from camgeo.recipe.figure_bounds import limits_of, verify_of
 from camgeo.recipe.figures import LEAST_WALL, PRESSURE_ANGLE
 from camgeo.recipe.keys import CORE
 from camgeo.recipe.machining import MOST_RPM
 from camgeo.recipe.materials import material
 from camgeo.recipe.radii import radii_form
-from camgeo.registry.formats import FORMATS, Form
-from camgeo.registry.slot import NO_CHECK
 from camgeo.schema.fields import MOST, Field, FieldTable, Kind, OwnForm, length, mapping
 from camgeo.schema.json_schema import number_schema
 from camgeo.schema.read_scalar import read_numeric
@@ -245,58 +242,16 @@ FIGURES = {
 
 LIMITS = limits_of(FIGURES)
 
-DEVELOPMENT = "development"
-TABLES = ("motion", "flank")
-"""Tables of CSV, by their words."""
-
-
-def _one_of(name: str, word: str, about: str, *options: Field, contour: bool) -> Format:
-    """A format with one form, which a file may name after `as`."""
-    form = Field("as", Kind.CHOICE, about, default=word, choices=(word,))
-    return replace(
-        FORMATS[name],
-        options=FieldTable((form, *options)),
-        forms={word: Form(name=word, pieces="lines")},
-        check=NO_CHECK,
-        contour=contour,
-    )
-
-
-def _tables() -> Format:
-    form = Field("as", Kind.CHOICE, "which table it is", default=TABLES[0], choices=TABLES)
-    step = Field("step", Kind.ANGLE, "shaft angle between rows", default="0.5", at_least=0.001, at_most=90)
-    forms = {name: Form(name=name) for name in TABLES}
-    return replace(FORMATS["csv"], options=FieldTable((form, step, RECIPE_UNITS)), forms=forms, check=NO_CHECK)
-
-
-def _mesh(name: str, *options: Field) -> Format:
-    return replace(FORMATS[name], options=FieldTable(options), forms={"": Form(pieces="triangles")}, solid=False)
-
-
-def _surfaces(name: str, *options: Field) -> Format:
-    return replace(_mesh(name, *options), forms={"": Form(pieces="patches")}, check=NO_CHECK)
-
-
-FILES: dict[str, Format] = {
-    **{name: _mesh(name, SOLID_UNITS, TOLERANCE) for name in ("stl", "ply", "3mf")},
-    "step": _surfaces("step", SOLID_UNITS, TOLERANCE),
-    "glb": replace(_mesh("glb", TOLERANCE), contour=False),
-    "dxf": _one_of(
-        "dxf",
-        DEVELOPMENT,
-        "the flanks and the path of the roller's axis, unrolled",
-        Field(
-            "at",
-            Kind.OWN,
-            "radii at which it is unrolled",
-            default="[outer, pitch]",
-            form=radii_form({OUTER: "for the blank", PITCH: "for the path of the roller's axis"}),
-        ),
-        RECIPE_UNITS,
-        TOLERANCE,
-        contour=True,
+FILES: dict[str, Format] = turned_files(
+    "the flanks and the path of the roller's axis, unrolled",
+    Field(
+        "at",
+        Kind.OWN,
+        "radii at which it is unrolled",
+        default="[outer, pitch]",
+        form=radii_form({OUTER: "for the blank", PITCH: "for the path of the roller's axis"}),
     ),
-    **program_files(
+    program_files(
         "diameter of the cutter, of one that tapers at its end; at most that of the roller",
         Field(
             "taper",
@@ -307,9 +262,9 @@ FILES: dict[str, Format] = {
             at_most=STEEPEST_CONE,
         ),
     ),
-    "csv": _tables(),
-    "html": replace(FORMATS["html"], options=FieldTable(())),
-}
+    ("motion", "flank"),
+    surfaces=True,
+)
 """Formats of the files of a cylindrical cam, with the options that they take."""
 MADE = mapping(
     "made",
@@ -322,18 +277,7 @@ RECIPE = FieldTable(
         Field("cam", Kind.TABLE, "the drum", required=True, table=CAM),
         PART,
         export_of(FILES, "{dxf: {as: development, at: [outer, 38]}}", "[stl]"),
-        mapping(
-            "verify",
-            "how each file is judged",
-            Field(
-                "motion_error",
-                Kind.MOTION,
-                "greatest motion error permitted, along the axis, of an arm an angle",
-                default="what the tolerance implies",
-                above=0,
-                at_most=MOST,
-            ),
-        ),
+        verify_of(Kind.MOTION, "greatest motion error permitted, along the axis, of an arm an angle"),
         LIMITS,
         MADE,
     )

@@ -2,18 +2,16 @@
 
 from __future__ import annotations
 
-from functools import cached_property, partial
-from typing import TYPE_CHECKING
+from functools import partial
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from camgeo.api.check import Check, Figures
 from camgeo.api.log import stage_reporter
-from camgeo.api.own_kind import KindDesign, angles_of, foreseen_with, order_of
+from camgeo.api.own_kind import DesignInRun, angles_of, foreseen_with, order_of
 from camgeo.capabilities.cylindrical.checks import LENGTH, RIB
-from camgeo.capabilities.cylindrical.checks_of import design_checks, limits_held
 from camgeo.capabilities.cylindrical.exact import designed
-from camgeo.capabilities.cylindrical.figures import CONTACT_PRESSURE, figures_of
+from camgeo.capabilities.cylindrical.figures import CONTACT_PRESSURE
 from camgeo.capabilities.cylindrical.gentler import gentler
 from camgeo.capabilities.cylindrical.sheet import points_of
 from camgeo.checks.declared import FORM_CLOSURE, LIMIT, WATERTIGHT
@@ -30,6 +28,7 @@ if TYPE_CHECKING:
     from camgeo.capabilities.cylindrical.design import DrumDesign
     from camgeo.capabilities.cylindrical.drum_recipe import DrumRecipe
     from camgeo.checks.declaration import Entry
+    from camgeo.output.own_kind import OwnKind
     from camgeo.recipe.export import FileRequest
     from camgeo.synthesis.expected_checks import Foreseen
     from kin.numeric.arrays import Array
@@ -44,23 +43,18 @@ FIELDS = {
 
 
 @dataclass(frozen=True, eq=False)
-class CylindricalCam(KindDesign):
+class CylindricalCam(DesignInRun):
     """The exact drum of a cylindrical cam; no file is made. Checks and figures are in the recipe's units."""
 
     recipe: DrumRecipe
     _design: DrumDesign = field(repr=False)
 
-    @cached_property
-    def checks(self) -> tuple[Check, ...]:
-        """The checks that need no file, those of limits among them."""
-        figures = figures_of(self._design)
-        checks = design_checks(self._design, figures)
-        return tuple(Check.of(self.recipe, check) for check in (*checks, *limits_held(self._design, figures, checks)))
+    @property
+    def kind(self) -> OwnKind[Any, Any]:
+        """The kind of the cam in a run."""
+        from camgeo.capabilities.cylindrical.pipeline import DRUMS
 
-    @cached_property
-    def figures(self) -> Figures:
-        """The figures of the drum by name, each with its shaft angle, degrees."""
-        return Figures.placed(self.recipe, figures_of(self._design), "deg")
+        return DRUMS
 
     def motion(self, theta: ArrayLike, *, derivative: int = 0) -> Array:
         """Lift, mm, of an arm its swing, rad, at shaft angles, rad, in their shape, or a derivative up to the sixth.

@@ -174,15 +174,15 @@ def _checks(design: DrumDesign, made: MadeDrum, options: _Options) -> tuple[list
             verdicts[f"{PROFILE} {name}"] = verdict
     limit, follower = recipe.verify.motion_error, intended(design).follower
     for ring in made.rings if limit is not None else ():
-        probe = follower.told(1.0) * unsure * ring.most_moved
+        probe = follower.in_unit(1.0) * unsure * ring.most_moved
         values = np.abs(ring.error), np.hypot(ring.uncertain, probe), equal_steps(len(ring.error))
-        check, verdict = _held(MOTION, values, follower.told(limit or 0.0), follower.unit)
+        check, verdict = _held(MOTION, values, follower.in_unit(limit or 0.0), follower.unit)
         name = made.flanks[_index(made, ring)].gauge.name
         told = f"by {ring.count} points round a radius of {ring.radius:.6g} mm alone, {ring.waves} waves a turn"
         checks.append(replace(check, surface=name, detail=f"{check.detail}; {told}, {rests}"))
         verdicts[f"{MOTION} {name} {ring.radius:.6g}"] = verdict
     if limit is not None and not made.rings:
-        checks.append(failed(MOTION, f"not proved: {NO_RING}", unit=follower.unit, limit=follower.told(limit)))
+        checks.append(failed(MOTION, f"not proved: {NO_RING}", unit=follower.unit, limit=follower.in_unit(limit)))
         verdicts[MOTION] = "not proved"
     return checks, verdicts
 
@@ -320,8 +320,8 @@ def _play(design: DrumDesign, drum: DrumIntent, made: MadeDrum) -> dict[str, Any
         return None
     low, high = pairs[0]
     theta = equal_steps(len(low.error))
-    told = drum.follower.told(1.0) / (1.0 if drum.follower.arm is None else drum.follower.arm.length)
-    play = told * exact_play(drum, theta) + high.error - low.error
+    per_mm = drum.follower.in_unit(1.0) / (1.0 if drum.follower.arm is None else drum.follower.arm.length)
+    play = per_mm * exact_play(drum, theta) + high.error - low.error
     scale = 1.0 if drum.follower.unit == "deg" else 1.0 / design.recipe.mm
     unit = in_units(design.recipe, None, drum.follower.unit)[1]
     least, most = int(np.argmin(play)), int(np.argmax(play))

@@ -25,7 +25,7 @@ if TYPE_CHECKING:
     from camgeo.capabilities.cylindrical.design import DrumDesign
     from camgeo.common.clock import Clock
     from camgeo.recipe.export import FileRequest
-    from kin.cylindrical.verdict import DrumVerdict
+    from kin.turned.verdict import TurnedVerdict
 
 
 def foresee(design: DrumDesign, request: FileRequest) -> None:
@@ -52,7 +52,7 @@ def _demand_judged(design: DrumDesign, request: FileRequest) -> None:
     demand_judged(recipe, request, finest, "a program of this drum")
 
 
-def make(design: DrumDesign, clock: Clock, request: FileRequest, path: Path) -> Made[DrumVerdict]:
+def make(design: DrumDesign, clock: Clock, request: FileRequest, path: Path) -> Made[TurnedVerdict]:
     """Make, write, read back and judge one file.
 
     Raises RecipeErrors where the tolerance cannot be held or no sound file can be made, OSError where it cannot be
@@ -70,7 +70,7 @@ def make(design: DrumDesign, clock: Clock, request: FileRequest, path: Path) -> 
         return maker(design, clock, request, path)
 
 
-def _mesh(design: DrumDesign, clock: Clock, request: FileRequest, path: Path) -> Made[DrumVerdict]:
+def _mesh(design: DrumDesign, clock: Clock, request: FileRequest, path: Path) -> Made[TurnedVerdict]:
     recipe, mm, write = design.recipe, UNIT_MM[request.unit_for(design.recipe.units)], MAKING[request.kind].write
     if write is None:
         raise ValueError(f"{request.kind} holds no mesh")
@@ -81,7 +81,7 @@ def _mesh(design: DrumDesign, clock: Clock, request: FileRequest, path: Path) ->
     return judged_made(judged_file, design, path, request, clock=clock, fit=(None, facts.bound))
 
 
-def _surfaces(design: DrumDesign, clock: Clock, request: FileRequest, path: Path) -> Made[DrumVerdict]:
+def _surfaces(design: DrumDesign, clock: Clock, request: FileRequest, path: Path) -> Made[TurnedVerdict]:
     from camgeo.capabilities.cylindrical.brep import drum_solid
     from camgeo.formats.step import write_shape
 
@@ -93,7 +93,7 @@ def _surfaces(design: DrumDesign, clock: Clock, request: FileRequest, path: Path
     return judged_made(judged_file, design, path, request, clock=clock, fit=(solid.pieces, Bound(solid.off, solid.off)))
 
 
-def _view(design: DrumDesign, clock: Clock, request: FileRequest, path: Path) -> Made[DrumVerdict]:
+def _view(design: DrumDesign, clock: Clock, request: FileRequest, path: Path) -> Made[TurnedVerdict]:
     """The drum as it turns, to look at."""
     with clock.stage("mesh glb"):
         mesh, _ = drum_mesh(design, design.recipe.tolerance(request), numbers_of("glb", 1.0))
@@ -103,7 +103,7 @@ def _view(design: DrumDesign, clock: Clock, request: FileRequest, path: Path) ->
     return Made(FileResult(path, request, units=UNIT_MM["m"]))
 
 
-def _development(design: DrumDesign, clock: Clock, request: FileRequest, path: Path) -> Made[DrumVerdict]:
+def _development(design: DrumDesign, clock: Clock, request: FileRequest, path: Path) -> Made[TurnedVerdict]:
     from camgeo.capabilities.cylindrical.development import write_development
 
     mm = UNIT_MM[request.unit_for(design.recipe.units)]
@@ -112,7 +112,7 @@ def _development(design: DrumDesign, clock: Clock, request: FileRequest, path: P
     return judged_made(judged_file, design, path, request, clock=clock, fit=fit)
 
 
-def _program(design: DrumDesign, clock: Clock, request: FileRequest, path: Path) -> Made[DrumVerdict]:
+def _program(design: DrumDesign, clock: Clock, request: FileRequest, path: Path) -> Made[TurnedVerdict]:
     from camgeo.capabilities.cylindrical.program import write_program
 
     with clock.stage(f"write {request.kind}"):

@@ -3,16 +3,18 @@
 from __future__ import annotations
 
 from functools import partial
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
-from camgeo.capabilities.cylindrical.checks_of import design_checks, limits_held, remarks_on
+from camgeo.capabilities.cylindrical.checks_of import design_checks, remarks_on
 from camgeo.capabilities.cylindrical.design import in_recipe
 from camgeo.capabilities.cylindrical.exact import designed, stated_motion
 from camgeo.capabilities.cylindrical.figures import figures_of
 from camgeo.capabilities.cylindrical.making import foresee, make
 from camgeo.capabilities.cylindrical.section import drum_section
 from camgeo.capabilities.cylindrical.solid import drum_mesh
-from camgeo.capabilities.cylindrical.verdicts import file_rows, judged_file
+from camgeo.capabilities.cylindrical.verdicts import judged_file
+from camgeo.measures.flanks import turned_rows
+from camgeo.measures.placed import limits_and_wall
 from camgeo.measures.units import UNIT_NAMES, report_unit
 from camgeo.output.extension import numbers_of
 from camgeo.output.own_kind import OwnKind, Told
@@ -20,41 +22,20 @@ from camgeo.output.refusals import refusals
 from camgeo.recipe.export import FileRequest
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Sequence
-    from pathlib import Path
+    from collections.abc import Sequence
 
     from camgeo.capabilities.cylindrical.design import DrumDesign
-    from camgeo.common.clock import Clock
     from camgeo.files.layer_outline import LayerOutline
     from camgeo.files.mesh import Mesh
     from camgeo.measures.placed import Figure
-    from camgeo.output.own_kind import Made, Page
+    from camgeo.output.own_kind import Page
     from camgeo.report.page.scene import Scene
-    from kin.cylindrical.verdict import DrumVerdict
     from kin.numeric.arrays import Array
-    from kin.numeric.check import Check
-
-
-def _examined(design: DrumDesign, _: Clock) -> tuple[list[Check], tuple[Figure, ...]]:
-    figures = tuple(figures_of(design))
-    return design_checks(design, figures), figures
 
 
 def _told(design: DrumDesign, figures: Sequence[Figure]) -> Told:
     unit = report_unit(design.recipe, design.recipe.guide.unit)
     return Told(design.recipe.follower_name, remarks_on(design, figures), design.motion.kept, unit)
-
-
-def _section(design: DrumDesign, figures: Sequence[Figure]) -> dict[str, Any]:
-    return {"drum": drum_section(design, figures)}
-
-
-def _rows(design: DrumDesign, verdict: DrumVerdict) -> dict[str, Any]:
-    return file_rows(design.recipe, verdict)
-
-
-def _maker(design: DrumDesign, clock: Clock) -> Callable[[FileRequest, Path], Made[DrumVerdict]]:
-    return partial(make, design, clock)
 
 
 def _seen(design: DrumDesign, step: int) -> Scene:
@@ -86,13 +67,15 @@ def _mesh(design: DrumDesign, request: FileRequest) -> Mesh:
 
 DRUMS = OwnKind(
     designed=designed,
-    examined=_examined,
-    limited=limits_held,
+    figures=figures_of,
+    at_unit="deg",
+    checks=design_checks,
+    limited=lambda design, figures, checks: limits_and_wall(design.recipe.limits, figures, checks, "deg"),
     told=_told,
-    section=_section,
-    rows=_rows,
+    section=lambda design, figures: {"drum": drum_section(design, figures)},
+    rows=turned_rows,
     foresee=foresee,
-    maker=_maker,
+    maker=lambda design, clock: partial(make, design, clock),
     judged=judged_file,
     seen=_seen,
     page_of=_page,

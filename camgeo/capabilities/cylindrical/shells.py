@@ -12,8 +12,8 @@ import numpy as np
 
 from camgeo.capabilities.cylindrical.crossings import sampled
 from camgeo.capabilities.cylindrical.development import drawn
-from kin.cylindrical.intent import Developed
 from kin.numeric.angles import TURN
+from kin.turned.files import Developed
 
 if TYPE_CHECKING:
     from camgeo.capabilities.cylindrical.design import DrumDesign

@@ -5,25 +5,24 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, Any
 
 from camgeo.capabilities.cylindrical.development import developed
-from camgeo.capabilities.cylindrical.keys import DEVELOPMENT, FILES
+from camgeo.capabilities.cylindrical.keys import FILES
 from camgeo.common.units import UNIT_MM
+from camgeo.formats.turned import developments_asked, program_asked
 from camgeo.machining.turned import cutting_of
-from camgeo.measures.units import in_units
 from camgeo.part.as_intent import holes_of
 from camgeo.part.body import Body
-from camgeo.recipe.export import requests
 from kin.cylindrical import intent
 from kin.cylindrical.follower import DrumFollower
 from kin.cylindrical.judge import verify, verify_development
+from kin.numeric.limits import Limits
 from kin.read.formats import format_of
 
 if TYPE_CHECKING:
     from pathlib import Path
 
     from camgeo.capabilities.cylindrical.design import DrumDesign
-    from camgeo.capabilities.cylindrical.drum_recipe import DrumRecipe
     from camgeo.recipe.export import FileRequest
-    from kin.cylindrical.verdict import DrumVerdict, FlankVerdict
+    from kin.turned.verdict import TurnedVerdict
 
 
 def intended(design: DrumDesign, mm: float = 1.0) -> intent.DrumIntent:
@@ -55,14 +54,14 @@ def judged_file(
     *,
     units: float | None = None,
     gap: float | None = None,  # noqa: ARG001 - lines of a development are not joined
-) -> DrumVerdict:
+) -> TurnedVerdict:
     """Kin's verdict on a file; `units` is mm in the unit of a file that states none.
 
     A drawing that the recipe does not request is compared with all developments that it does request, or else with the
     default one.
     """
     recipe = design.recipe
-    limits = intent.Limits(tolerance, recipe.verify.motion_error)
+    limits = Limits(tolerance, recipe.verify.motion_error)
     if format_of(path).contents == "program":
         return _judged_program(design, path, request, limits)
     stated = format_of(path).units
@@ -73,50 +72,16 @@ def judged_file(
     if format_of(path).contents != "drawing":
         own = 1.0 if request is None else UNIT_MM[request.unit_for("mm")]
         return verify(path, intended(design), limits, None if stated else units or own)
-    asked = [request] if request is not None else [each for each in recipe.export.files if each.as_ == DEVELOPMENT]
-    asked = asked or list(requests([{"kind": "dxf"}], FILES))
+    asked = developments_asked(recipe, request, FILES)
     mm = UNIT_MM[asked[0].unit_for(recipe.units)]
     lines = {line.layer: line for each in asked for line in developed(design, each, mm)}
     return verify_development(path, intended(design, mm), list(lines.values()), limits, None if stated else units or mm)
 
 
-def _judged_program(design: DrumDesign, path: Path, request: FileRequest | None, limits: intent.Limits) -> DrumVerdict:
+def _judged_program(design: DrumDesign, path: Path, request: FileRequest | None, limits: Limits) -> TurnedVerdict:
     """Kin's verdict on a program; one that the recipe does not ask for is judged by the cutter of one that it does."""
     from kin.cylindrical.program import verify_program
 
     recipe = design.recipe
-    asked = request or next((each for each in recipe.export.files if each.format.program), None)
-    if asked is None:
-        remedy = "give export: {files: [{gcode: {axes: [X, A], cutter: 20, ...}}]}: a program is judged by its cutter"
-        raise recipe.error("export.files", "no program is asked for", None, remedy)
+    asked = program_asked(recipe, request, "axes: [X, A], cutter: 20, ...")
     return verify_program(path, intended(design), cutting_of(asked, recipe.track.depth), limits)
-
-
-# --- in a report ------------------------------------------------------------------------------------------------------
-
-
-def file_rows(recipe: DrumRecipe, verdict: DrumVerdict) -> dict[str, Any]:
-    """Entries of a file in a report: what was measured on each of its flanks, and the play between two."""
-    entry: dict[str, Any] = {}
-    if len(verdict.flanks) == 1:
-        entry |= _flank(recipe, verdict.flanks[0])
-    elif verdict.flanks:
-        entry["surfaces"] = [{"name": flank.name, **_flank(recipe, flank)} for flank in verdict.flanks]
-    if verdict.play is not None:
-        play = verdict.play
-        given = recipe.guide.unit
-        (least, unit), (most, _) = in_units(recipe, play.least, given), in_units(recipe, play.most, given)
-        places = {"min_at": play.least_at, "max_at": play.most_at}
-        entry["play"] = [{"between": ["lower", "upper"], "min": least, "max": most, "unit": unit, **places}]
-    return entry
-
-
-def _flank(recipe: DrumRecipe, flank: FlankVerdict) -> dict[str, Any]:
-    error = None if flank.measured_error is None else flank.measured_error / recipe.mm
-    if flank.motion is None:
-        return {"measured_error": error, "motion": None}
-    motion: dict[str, Any] = {}
-    for key in ("max", "least", "most", "rms", "remainder"):
-        motion[key], unit = in_units(recipe, getattr(flank.motion, key), recipe.guide.unit)
-    motion |= {"unit": unit, "at": flank.motion.at, "at_unit": "deg", "extremes": "proved"}
-    return {"measured_error": error, "motion": motion}

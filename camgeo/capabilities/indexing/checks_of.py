@@ -8,7 +8,7 @@ import numpy as np
 
 from camgeo.capabilities.indexing.figures import Search, bears, contact_length
 from camgeo.capabilities.indexing.keys import LENGTH, RIB
-from camgeo.measures.placed import figure_check, limits_and_wall
+from camgeo.measures.placed import figure_check
 from camgeo.measures.rule_remark import RuleRemark
 from camgeo.recipe.figures import LEAST_WALL, PRESSURE_ANGLE
 from kin.numeric.check import Check
@@ -67,11 +67,6 @@ def walls(design: IndexDesign) -> list[tuple[float, str]]:
         return [(2.0 * core, "across the core within the floor")]
     reach = float(np.hypot(*design.bore.outline.points.T).max())
     return [(core - reach, "between the bore and the floor")]
-
-
-def limits_held(design: IndexDesign, figures: Sequence[Figure], checks: Sequence[Check]) -> list[Check]:
-    """Checks of the figures that the recipe limits, those of the least wall among them."""
-    return limits_and_wall(design.recipe.limits, figures, checks, "deg")
 
 
 def remarks_on(design: IndexDesign, figures: Sequence[Figure]) -> tuple[RuleRemark, ...]:

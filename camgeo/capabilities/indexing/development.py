@@ -21,10 +21,10 @@ from camgeo.capabilities.indexing.keys import OUTER
 from camgeo.capabilities.indexing.spans import breaks_within, span_of
 from camgeo.fit.bound import Bound
 from camgeo.fit.nodes import ToleranceError
-from kin.indexing.intent import Developed
 from kin.numeric.angles import TURN
 from kin.numeric.arrays import runs_of
 from kin.numeric.interval import Ball
+from kin.turned.files import Developed
 
 if TYPE_CHECKING:
     from pathlib import Path

@@ -55,7 +55,8 @@ def script(design: IndexDesign, _: Sequence[Made[Any]] = ()) -> dict[str, Any]:
 
 def panels(design: IndexDesign, report: dict[str, Any]) -> str:
     """Return the HTML of the development, which a barrel has, and of the figures."""
-    return f'<div class="charts-and-figures">{_charts(design)}{_figures(report)}</div>'
+    figures = tables.figures(report["indexing"]["figures"], "at", "°")
+    return f'<div class="charts-and-figures">{_charts(design)}{figures}</div>'
 
 
 def _asset(name: str) -> str:
@@ -69,16 +70,6 @@ def _charts(design: IndexDesign) -> str:
         '<section aria-labelledby="charts-head"><h2 id="charts-head">Development</h2><div class="charts">'
         f"<figure>{development(design)}<figcaption>{legend(design)}</figcaption></figure></div></section>"
     )
-
-
-def _figures(report: dict[str, Any]) -> str:
-    rows = []
-    for entry in report["indexing"]["figures"]:
-        at = f"{entry['at']:.2f}°" if "at" in entry else ""
-        value = entry["value"]
-        shown = tables.number(value) if value is not None and math.isfinite(value) else tables.NONE
-        rows.append(tables.named_row(entry["name"], shown, entry["unit"], at))
-    return f"<section><h2>Figures</h2>{tables.html_table('Figures', ('figure', 'value', 'unit', 'at'), rows)}</section>"
 
 
 def _played(design: IndexDesign, of: list[Layer], digits: int) -> dict[str, Any]:

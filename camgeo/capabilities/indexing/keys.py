@@ -4,22 +4,19 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from camgeo.formats.options import RECIPE_UNITS, SOLID_UNITS, TOLERANCE
-from camgeo.formats.turned import program_files
+from camgeo.formats.turned import program_files, turned_files
 from camgeo.motions.inputs import Input
 from camgeo.motions.motion import motion_field
 from camgeo.part import bore
 from camgeo.part.keyway import FEATURE as KEYWAY
 from camgeo.part.part import DENSITY
 from camgeo.recipe.export import export_of
-from camgeo.recipe.figure_bounds import limits_of
+from camgeo.recipe.figure_bounds import limits_of, verify_of
 from camgeo.recipe.figures import LEAST_WALL, PRESSURE_ANGLE
 from camgeo.recipe.keys import CORE
 from camgeo.recipe.machining import MOST_RPM
 from camgeo.recipe.materials import material
 from camgeo.recipe.radii import radii_form
-from camgeo.registry.formats import FORMATS, Form
-from camgeo.registry.slot import NO_CHECK
 from camgeo.schema.fields import MOST, Field, FieldTable, Kind, length, mapping
 from kin.numeric.records import replace
 
@@ -191,48 +188,18 @@ FIGURES = {
 
 LIMITS = limits_of(FIGURES)
 
-DEVELOPMENT = "development"
-TABLE = "motion"
-
-
-def _mesh(name: str, *options: Field) -> Format:
-    return replace(FORMATS[name], options=FieldTable(options), forms={"": Form(pieces="triangles")}, solid=False)
-
-
-def _development() -> Format:
-    form = Field("as", Kind.CHOICE, "the flanks, unrolled", default=DEVELOPMENT, choices=(DEVELOPMENT,))
-    at = Field(
+FILES: dict[str, Format] = turned_files(
+    "the flanks, unrolled",
+    Field(
         "at",
         Kind.OWN,
         "radii at which they are unrolled",
         default=f"[{OUTER}]",
         form=radii_form({OUTER: "for the blank"}),
-    )
-    return replace(
-        FORMATS["dxf"],
-        options=FieldTable((form, at, RECIPE_UNITS, TOLERANCE)),
-        forms={DEVELOPMENT: Form(name=DEVELOPMENT, pieces="lines")},
-        check=NO_CHECK,
-        contour=True,
-    )
-
-
-def _table() -> Format:
-    form = Field("as", Kind.CHOICE, "which table it is", default=TABLE, choices=(TABLE,))
-    step = Field("step", Kind.ANGLE, "shaft angle between rows", default="0.5", at_least=0.001, at_most=90)
-    return replace(
-        FORMATS["csv"], options=FieldTable((form, step, RECIPE_UNITS)), forms={TABLE: Form(name=TABLE)}, check=NO_CHECK
-    )
-
-
-FILES: dict[str, Format] = {
-    **{name: _mesh(name, SOLID_UNITS, TOLERANCE) for name in ("stl", "ply", "3mf")},
-    "glb": replace(_mesh("glb", TOLERANCE), contour=False),
-    "dxf": _development(),
-    **program_files("diameter of the cutter; at most that of the smaller roller"),
-    "csv": _table(),
-    "html": replace(FORMATS["html"], options=FieldTable(())),
-}
+    ),
+    program_files("diameter of the cutter; at most that of the smaller roller"),
+    ("motion",),
+)
 """Formats of the files of an indexing cam, with the options that they take."""
 RECIPE = FieldTable(
     (
@@ -240,18 +207,7 @@ RECIPE = FieldTable(
         Field("cam", Kind.TABLE, "the cam and its turret", required=True, table=CAM),
         PART,
         export_of(FILES, "{dxf: {as: development, at: [outer, 38]}}", "[stl]"),
-        mapping(
-            "verify",
-            "how each file is judged",
-            Field(
-                "motion_error",
-                Kind.MOTION,
-                "greatest error of the turret's angle permitted",
-                default="what the tolerance implies",
-                above=0,
-                at_most=MOST,
-            ),
-        ),
+        verify_of(Kind.MOTION, "greatest error of the turret's angle permitted"),
         LIMITS,
     )
 )

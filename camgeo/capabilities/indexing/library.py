@@ -2,17 +2,14 @@
 
 from __future__ import annotations
 
-from functools import cached_property, partial
-from typing import TYPE_CHECKING
+from functools import partial
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from camgeo.api.check import Check, Figures
 from camgeo.api.log import stage_reporter
-from camgeo.api.own_kind import KindDesign, angles_of, foreseen_with, order_of
-from camgeo.capabilities.indexing.checks_of import design_checks, limits_held
+from camgeo.api.own_kind import DesignInRun, angles_of, foreseen_with, order_of
 from camgeo.capabilities.indexing.exact import designed
-from camgeo.capabilities.indexing.figures import figures_of
 from camgeo.capabilities.indexing.keys import LENGTH, RIB
 from camgeo.checks.declared import FORM_CLOSURE, LIMIT, WATERTIGHT
 from camgeo.common.clock import Clock
@@ -28,6 +25,7 @@ if TYPE_CHECKING:
     from camgeo.capabilities.indexing.design import IndexDesign
     from camgeo.capabilities.indexing.index_recipe import IndexRecipe
     from camgeo.checks.declaration import Entry
+    from camgeo.output.own_kind import OwnKind
     from camgeo.recipe.export import FileRequest
     from camgeo.synthesis.expected_checks import Foreseen
     from kin.numeric.arrays import Array
@@ -37,23 +35,18 @@ FIELDS = {PRESSURE_ANGLE: "cam.motion", LENGTH: "cam.turret", RIB: "cam.turret.r
 
 
 @dataclass(frozen=True, eq=False)
-class IndexingCam(KindDesign):
+class IndexingCam(DesignInRun):
     """The exact cam of an indexing drive; no file is made. Checks and figures are in the recipe's units."""
 
     recipe: IndexRecipe
     _design: IndexDesign = field(repr=False)
 
-    @cached_property
-    def checks(self) -> tuple[Check, ...]:
-        """The checks that need no file, those of limits among them."""
-        figures = figures_of(self._design)
-        checks = design_checks(self._design, figures)
-        return tuple(Check.of(self.recipe, check) for check in (*checks, *limits_held(self._design, figures, checks)))
+    @property
+    def kind(self) -> OwnKind[Any, Any]:
+        """The kind of the cam in a run."""
+        from camgeo.capabilities.indexing.pipeline import INDEXERS
 
-    @cached_property
-    def figures(self) -> Figures:
-        """The figures of the cam by name, each with its shaft angle, degrees."""
-        return Figures.placed(self.recipe, figures_of(self._design), "deg")
+        return INDEXERS
 
     def motion(self, theta: ArrayLike, *, derivative: int = 0) -> Array:
         """Angle of the turret above its start, rad, at any shaft angles, rad, in their shape, or a derivative.

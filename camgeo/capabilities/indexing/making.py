@@ -24,7 +24,7 @@ if TYPE_CHECKING:
     from camgeo.capabilities.indexing.design import IndexDesign
     from camgeo.common.clock import Clock
     from camgeo.recipe.export import FileRequest
-    from kin.indexing.verdict import IndexVerdict
+    from kin.turned.verdict import TurnedVerdict
 
 
 def foresee(design: IndexDesign, request: FileRequest) -> None:
@@ -44,7 +44,7 @@ def _demand_judged(design: IndexDesign, request: FileRequest) -> None:
     demand_judged(recipe, request, finest, "a program of this barrel")
 
 
-def make(design: IndexDesign, clock: Clock, request: FileRequest, path: Path) -> Made[IndexVerdict]:
+def make(design: IndexDesign, clock: Clock, request: FileRequest, path: Path) -> Made[TurnedVerdict]:
     """Make, write, read back and judge one file.
 
     Raises RecipeErrors where the tolerance cannot be held or no sound file can be made, OSError where it cannot be
@@ -62,7 +62,7 @@ def make(design: IndexDesign, clock: Clock, request: FileRequest, path: Path) ->
         return maker(design, clock, request, path)
 
 
-def _mesh(design: IndexDesign, clock: Clock, request: FileRequest, path: Path) -> Made[IndexVerdict]:
+def _mesh(design: IndexDesign, clock: Clock, request: FileRequest, path: Path) -> Made[TurnedVerdict]:
     recipe, mm, write = design.recipe, UNIT_MM[request.unit_for(design.recipe.units)], MAKING[request.kind].write
     if write is None:
         raise ValueError(f"{request.kind} holds no mesh")
@@ -73,7 +73,7 @@ def _mesh(design: IndexDesign, clock: Clock, request: FileRequest, path: Path) -
     return judged_made(judged_file, design, path, request, clock=clock, fit=(None, facts.bound))
 
 
-def _view(design: IndexDesign, clock: Clock, request: FileRequest, path: Path) -> Made[IndexVerdict]:
+def _view(design: IndexDesign, clock: Clock, request: FileRequest, path: Path) -> Made[TurnedVerdict]:
     """The cam as it turns, with its turret, to look at."""
     from camgeo.capabilities.indexing.actors import turret_actors
 
@@ -85,7 +85,7 @@ def _view(design: IndexDesign, clock: Clock, request: FileRequest, path: Path) -
     return Made(FileResult(path, request, units=UNIT_MM["m"]))
 
 
-def _development(design: IndexDesign, clock: Clock, request: FileRequest, path: Path) -> Made[IndexVerdict]:
+def _development(design: IndexDesign, clock: Clock, request: FileRequest, path: Path) -> Made[TurnedVerdict]:
     from camgeo.capabilities.indexing.development import write_development
 
     mm = UNIT_MM[request.unit_for(design.recipe.units)]
@@ -94,7 +94,7 @@ def _development(design: IndexDesign, clock: Clock, request: FileRequest, path: 
     return judged_made(judged_file, design, path, request, clock=clock, fit=fit)
 
 
-def _program(design: IndexDesign, clock: Clock, request: FileRequest, path: Path) -> Made[IndexVerdict]:
+def _program(design: IndexDesign, clock: Clock, request: FileRequest, path: Path) -> Made[TurnedVerdict]:
     from camgeo.capabilities.indexing.program import write_program
 
     mm = UNIT_MM[request.unit_for(design.recipe.units)]

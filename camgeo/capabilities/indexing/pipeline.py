@@ -3,16 +3,18 @@
 from __future__ import annotations
 
 from functools import partial
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
-from camgeo.capabilities.indexing.checks_of import design_checks, limits_held, remarks_on
+from camgeo.capabilities.indexing.checks_of import design_checks, remarks_on
 from camgeo.capabilities.indexing.design import in_recipe
 from camgeo.capabilities.indexing.exact import designed, stated_motion
 from camgeo.capabilities.indexing.figures import figures_of
 from camgeo.capabilities.indexing.making import foresee, make
 from camgeo.capabilities.indexing.section import index_section
 from camgeo.capabilities.indexing.solid import index_mesh
-from camgeo.capabilities.indexing.verdicts import file_rows, judged_file
+from camgeo.capabilities.indexing.verdicts import judged_file
+from camgeo.measures.flanks import turned_rows
+from camgeo.measures.placed import limits_and_wall
 from camgeo.measures.units import UNIT_NAMES, report_unit
 from camgeo.output.extension import numbers_of
 from camgeo.output.own_kind import OwnKind, Told
@@ -20,41 +22,20 @@ from camgeo.output.refusals import refusals
 from camgeo.recipe.export import FileRequest
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Sequence
-    from pathlib import Path
+    from collections.abc import Sequence
 
     from camgeo.capabilities.indexing.design import IndexDesign
-    from camgeo.common.clock import Clock
     from camgeo.files.layer_outline import LayerOutline
     from camgeo.files.mesh import Mesh
     from camgeo.measures.placed import Figure
-    from camgeo.output.own_kind import Made, Page
+    from camgeo.output.own_kind import Page
     from camgeo.report.page.scene import Scene
-    from kin.indexing.verdict import IndexVerdict
     from kin.numeric.arrays import Array
-    from kin.numeric.check import Check
-
-
-def _examined(design: IndexDesign, _: Clock) -> tuple[list[Check], tuple[Figure, ...]]:
-    figures = tuple(figures_of(design))
-    return design_checks(design, figures), figures
 
 
 def _told(design: IndexDesign, figures: Sequence[Figure]) -> Told:
     unit = report_unit(design.recipe, "deg")
     return Told(design.recipe.follower_name, remarks_on(design, figures), design.motion.kept, unit)
-
-
-def _section(design: IndexDesign, figures: Sequence[Figure]) -> dict[str, Any]:
-    return {"indexing": index_section(design, figures)}
-
-
-def _rows(design: IndexDesign, verdict: IndexVerdict) -> dict[str, Any]:
-    return file_rows(design.recipe, verdict)
-
-
-def _maker(design: IndexDesign, clock: Clock) -> Callable[[FileRequest, Path], Made[IndexVerdict]]:
-    return partial(make, design, clock)
 
 
 def _seen(design: IndexDesign, step: int) -> Scene:
@@ -88,13 +69,15 @@ def _mesh(design: IndexDesign, request: FileRequest) -> Mesh:
 
 INDEXERS = OwnKind(
     designed=designed,
-    examined=_examined,
-    limited=limits_held,
+    figures=figures_of,
+    at_unit="deg",
+    checks=design_checks,
+    limited=lambda design, figures, checks: limits_and_wall(design.recipe.limits, figures, checks, "deg"),
     told=_told,
-    section=_section,
-    rows=_rows,
+    section=lambda design, figures: {"indexing": index_section(design, figures)},
+    rows=partial(turned_rows, named=True),
     foresee=foresee,
-    maker=_maker,
+    maker=lambda design, clock: partial(make, design, clock),
     judged=judged_file,
     seen=_seen,
     page_of=_page,

@@ -18,8 +18,8 @@ import numpy as np
 
 from camgeo.capabilities.indexing.bends import bends
 from camgeo.capabilities.indexing.spans import TrackError, breaks_within, layers_at, layers_of, span_of
-from camgeo.common.rounding import upward
 from camgeo.curve.curve import CurveError
+from camgeo.fit.cells import MOST_CELLS, columns, fewest_cells, too_many
 from camgeo.fit.nodes import ToleranceError
 from kin.numeric.angles import TURN
 from kin.numeric.records import dataclass
@@ -32,9 +32,6 @@ if TYPE_CHECKING:
 LOOKS = 240  # parts of a turn, and
 BLOCKS = 4  # of the depth, over each of which second derivatives are bounded before triangles are known
 MOST_ROWS = 2000
-MOST_CELLS = 1_000_000
-COARSER = 1.2  # times the tolerance that the number of cells calls for, in a remedy
-MORE = 1.5  # times the fewest cells so far, from which on more rows are not tried
 ROUNDS = 40  # in which columns are divided and rows added
 MORE_ROWS = 1.2  # times as many rows, where they are too far apart
 SHARE = 0.9  # of a tolerance that the first columns are made for
@@ -124,7 +121,7 @@ def sheet_of(flank: Flank, tolerance: float, wide: tuple[float, float]) -> Sheet
     off = np.array([math.inf])
     for _ in range(ROUNDS):
         if theta.size * rows > MOST_CELLS:
-            raise _too_many(tolerance, theta.size * rows)
+            raise too_many(tolerance, theta.size * rows)
         net = _net(flank, shape, theta, rows)
         off, across = _off(flank, net)
         bad = ~(off <= tolerance)
@@ -171,32 +168,12 @@ def _first(flank: Flank, shape: _Shape, tolerance: float, wide: tuple[float, flo
     look = np.unique(np.concatenate([even, knots]))
     look = look[np.append(np.diff(look) > SAME, True)]
     found, reach = _bounds(flank, look)
-    best: tuple[float, int, Array] | None = None
-    count = 1
-    while count <= MOST_ROWS:
-        step = np.minimum(found.step(reach / count, SHARE * tolerance), wide[0])
-        if step.min() > 0.0:
-            cells = count * float(np.sum(np.diff(look) / step))
-            if best is None or cells < best[0]:
-                best = cells, count, step
-            elif cells > MORE * best[0]:
-                break
-        count += max(1, count // 8)
-    if best is None or best[0] > MOST_CELLS:
-        raise _too_many(tolerance, math.inf if best is None else best[0])
-    along = np.concatenate([[0.0], np.cumsum(np.diff(look) / best[2])])
-    at = np.interp(knots, look, along)
-    pieces = [
-        np.interp(np.linspace(low, high, max(1, math.ceil(high - low)) + 1)[1:-1], along, look)
-        for low, high in zip(at[:-1].tolist(), at[1:].tolist(), strict=True)
-    ]
-    return np.sort(np.concatenate([knots, *pieces])), best[1]
 
+    def step_of(count: int) -> Array:
+        return np.minimum(found.step(reach / count, SHARE * tolerance), wide[0])
 
-def _too_many(tolerance: float, cells: float) -> ToleranceError:
-    least = tolerance * (4.0 if math.isinf(cells) else COARSER * max(cells / MOST_CELLS, 1.0))
-    problem = f"a flank within {tolerance:.3g} mm would take too many triangles"
-    return ToleranceError(f"{problem}; give at least {upward(least, 3)} mm", least)
+    rows, step = fewest_cells(step_of, look, MOST_ROWS, tolerance)
+    return columns(knots, look, step), rows
 
 
 def _bounds(flank: Flank, look: Array) -> tuple[Bends, Array]:

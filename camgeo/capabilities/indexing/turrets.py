@@ -203,7 +203,7 @@ class BarrelTurret(Turret):
 
     def intended(self) -> Form:
         """Kin's barrel."""
-        from kin.indexing.intent import Barrel as Intended
+        from kin.indexing.forms import Barrel as Intended
 
         form = self.form
         return Intended(form.radius, form.depth, form.offset, form.pitch, form.side)
@@ -269,6 +269,6 @@ class GloboidTurret(Turret):
 
     def intended(self) -> Form:
         """Kin's globoid."""
-        from kin.indexing.intent import Globoid as Intended
+        from kin.indexing.forms import Globoid as Intended
 
         return Intended(self.form.radius, self.form.depth, self.form.distance)

@@ -2,26 +2,25 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 from camgeo.capabilities.indexing.development import developed
-from camgeo.capabilities.indexing.keys import DEVELOPMENT, EXAMPLE, FILES, NO_PROGRAM, SOLID_OF_IT
+from camgeo.capabilities.indexing.keys import EXAMPLE, FILES, NO_PROGRAM, SOLID_OF_IT
 from camgeo.common.units import UNIT_MM
+from camgeo.formats.turned import developments_asked, program_asked
 from camgeo.machining.turned import cutting_of
-from camgeo.measures.units import in_units
 from camgeo.part.as_intent import holes_of
 from camgeo.part.body import Body
-from camgeo.recipe.export import requests
 from kin.indexing import intent
+from kin.numeric.limits import Limits
 from kin.read.formats import format_of
 
 if TYPE_CHECKING:
     from pathlib import Path
 
     from camgeo.capabilities.indexing.design import IndexDesign
-    from camgeo.capabilities.indexing.index_recipe import IndexRecipe
     from camgeo.recipe.export import FileRequest
-    from kin.indexing.verdict import FlankVerdict, IndexVerdict
+    from kin.turned.verdict import TurnedVerdict
 
 
 def intended(design: IndexDesign, mm: float = 1.0) -> intent.IndexIntent:
@@ -53,7 +52,7 @@ def judged_file(
     *,
     units: float | None = None,
     gap: float | None = None,  # noqa: ARG001 - lines of a development are not joined
-) -> IndexVerdict:
+) -> TurnedVerdict:
     """Kin's verdict on a file; `units` is mm in the unit of a file that states none.
 
     A drawing that the recipe does not request is compared with all developments that it does request, or else with the
@@ -62,7 +61,7 @@ def judged_file(
     from kin.indexing.judge import verify
 
     recipe = design.recipe
-    limits = intent.Limits(tolerance, recipe.verify.motion_error)
+    limits = Limits(tolerance, recipe.verify.motion_error)
     if format_of(path).contents == "program":
         return _judged_program(design, path, request, limits)
     stated = format_of(path).units
@@ -73,52 +72,18 @@ def judged_file(
         raise recipe.error(recipe.stated("cam.globoid"), "a globoid has no development", None, "give a solid of it")
     from kin.indexing.judge import verify_development
 
-    asked = [request] if request is not None else [each for each in recipe.export.files if each.as_ == DEVELOPMENT]
-    asked = asked or list(requests([{"kind": "dxf"}], FILES))
+    asked = developments_asked(recipe, request, FILES)
     mm = UNIT_MM[asked[0].unit_for(recipe.units)]
     lines = {line.layer: line for each in asked for line in developed(design, each, mm)}
     return verify_development(path, intended(design, mm), list(lines.values()), limits, None if stated else units or mm)
 
 
-def _judged_program(
-    design: IndexDesign, path: Path, request: FileRequest | None, limits: intent.Limits
-) -> IndexVerdict:
+def _judged_program(design: IndexDesign, path: Path, request: FileRequest | None, limits: Limits) -> TurnedVerdict:
     """Kin's verdict on a program; one that the recipe does not ask for is judged by the cutter of one that it does."""
     from kin.indexing.program import verify_program
 
     recipe = design.recipe
     if not recipe.turret.unrolls:
         raise recipe.error(recipe.stated("cam.globoid"), NO_PROGRAM, None, SOLID_OF_IT)
-    asked = request or next((each for each in recipe.export.files if each.format.program), None)
-    if asked is None:
-        remedy = f"give export: {{files: [{{gcode: {{{EXAMPLE}}}}}]}}: a program is judged by its cutter"
-        raise recipe.error("export.files", "no program is asked for", None, remedy)
+    asked = program_asked(recipe, request, EXAMPLE)
     return verify_program(path, intended(design), cutting_of(asked, recipe.form.depth), limits)
-
-
-# --- in a report ------------------------------------------------------------------------------------------------------
-
-
-def file_rows(recipe: IndexRecipe, verdict: IndexVerdict) -> dict[str, Any]:
-    """Entries of a file in a report: what was measured on each of its flanks, and the play between them."""
-    entry: dict[str, Any] = {}
-    if verdict.flanks:
-        entry["surfaces"] = [{"name": flank.name, **_flank(recipe, flank)} for flank in verdict.flanks]
-    if verdict.play is not None:
-        play = verdict.play
-        (least, unit), (most, _) = in_units(recipe, play.least, "deg"), in_units(recipe, play.most, "deg")
-        places = {"min_at": play.least_at, "max_at": play.most_at}
-        entry["play"] = [{"between": ["lower", "upper"], "min": least, "max": most, "unit": unit, **places}]
-    return entry
-
-
-def _flank(recipe: IndexRecipe, flank: FlankVerdict) -> dict[str, Any]:
-    error = None if flank.measured_error is None else flank.measured_error / recipe.mm
-    if flank.motion is None:
-        return {"measured_error": error, "motion": None}
-    motion: dict[str, Any] = {}
-    for key in ("max", "least", "most", "rms", "remainder"):
-        motion[key], unit = in_units(recipe, getattr(flank.motion, key), "deg")
-    known = "sampled" if flank.pieces is None else "proved"  # lines of a development are looked at between points alone
-    motion |= {"unit": unit, "at": flank.motion.at, "at_unit": "deg", "extremes": known}
-    return {"measured_error": error, "motion": motion}

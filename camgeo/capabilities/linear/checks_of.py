@@ -21,7 +21,6 @@ if TYPE_CHECKING:
     from collections.abc import Sequence
 
     from camgeo.capabilities.linear.design import LinearDesign
-    from camgeo.capabilities.linear.keys import LinearRecipe
 
 STILL = 1e-9  # slope at an end below which the follower is not struck
 STEEP = 30.0  # degrees, by rule of thumb for a follower on a stem
@@ -55,12 +54,12 @@ def design_checks(design: LinearDesign, figures: Sequence[Figure]) -> list[Check
     return [*checks, *chamfer_checks(design), *wall_checks(design)]
 
 
-def limits_held(recipe: LinearRecipe, figures: Sequence[Figure], checks: Sequence[Check]) -> list[Check]:
+def limits_held(design: LinearDesign, figures: Sequence[Figure], checks: Sequence[Check]) -> list[Check]:
     """Checks of the figures that the recipe limits, those of the wall between two edges among them."""
     wall = next((check for check in checks if check.name == LEAST_WALL and check.value is not None), None)
     if wall is None or wall.value is None:
-        return limit_checks(recipe.limits, figures, "mm", SURFACES)
-    held = limit_checks(recipe.limits, [*figures, Figure(LEAST_WALL, wall.value, "mm")], "mm", SURFACES)
+        return limit_checks(design.recipe.limits, figures, "mm", SURFACES)
+    held = limit_checks(design.recipe.limits, [*figures, Figure(LEAST_WALL, wall.value, "mm")], "mm", SURFACES)
     return [replace(each, detail=wall.detail) if each.name == LIMIT + LEAST_WALL else each for each in held]
 
 

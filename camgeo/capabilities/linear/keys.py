@@ -9,7 +9,7 @@ from camgeo.formats.options import RECIPE_UNITS, TOLERANCE
 from camgeo.motions.inputs import Input
 from camgeo.motions.motion import MOST_REPEATS, motion_field
 from camgeo.recipe.export import export_of
-from camgeo.recipe.figure_bounds import limits_of
+from camgeo.recipe.figure_bounds import limits_of, verify_of
 from camgeo.recipe.figures import HOLLOW_RADIUS, LEAST_WALL, PRESSURE_ANGLE, RADIUS
 from camgeo.recipe.keys import CORE
 from camgeo.recipe.machining import MANUFACTURE, MOST_RPM
@@ -503,18 +503,7 @@ RECIPE = FieldTable(
         Field("cam", Kind.TABLE, "the plate", required=True, table=CAM),
         PART,
         export_of(FILES),
-        mapping(
-            "verify",
-            "how each file is judged",
-            Field(
-                "motion_error",
-                Kind.ERROR,
-                "greatest motion error permitted: a length, or degrees where the follower swings",
-                default="what the tolerance implies",
-                above=0,
-                at_most=MOST,
-            ),
-        ),
+        verify_of(Kind.ERROR, "greatest motion error permitted: a length, or degrees where the follower swings"),
         LIMITS,
         Field(
             "manufacture",

@@ -2,22 +2,18 @@
 
 from __future__ import annotations
 
-from functools import cached_property, partial
-from typing import TYPE_CHECKING
+from functools import partial
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from camgeo.api.check import Check, Figure, Figures
 from camgeo.api.log import stage_reporter
-from camgeo.api.own_kind import KindDesign, foreseen_with, order_of
-from camgeo.capabilities.linear.checks_of import design_checks, limits_held
+from camgeo.api.own_kind import DesignInRun, foreseen_with, order_of
 from camgeo.capabilities.linear.design import designed
-from camgeo.capabilities.linear.figures import figures_of
 from camgeo.checks.declared import FORM_CLOSURE, WATERTIGHT
 from camgeo.common.arguments import numbers_of
 from camgeo.common.clock import Clock
 from camgeo.common.errors import CallError
-from camgeo.measures.units import in_units
 from camgeo.recipe.figures import LEAST_WALL, PITCH_RADIUS, PRESSURE_ANGLE
 from kin.numeric.records import dataclass, field
 
@@ -27,6 +23,7 @@ if TYPE_CHECKING:
     from camgeo.capabilities.linear.design import LinearDesign
     from camgeo.capabilities.linear.keys import LinearRecipe
     from camgeo.checks.declaration import Entry
+    from camgeo.output.own_kind import OwnKind
     from camgeo.recipe.export import FileRequest
     from camgeo.synthesis.expected_checks import Foreseen
     from kin.numeric.arrays import Array
@@ -41,29 +38,18 @@ FIELDS = {
 
 
 @dataclass(frozen=True, eq=False)
-class LinearCam(KindDesign):
+class LinearCam(DesignInRun):
     """The exact plate of a linear cam; no file is made. Checks and figures are in the recipe's units."""
 
     recipe: LinearRecipe
     _design: LinearDesign = field(repr=False)
 
-    @cached_property
-    def checks(self) -> tuple[Check, ...]:
-        """The checks that need no file, those of limits among them."""
-        figures = figures_of(self._design)
-        checks = design_checks(self._design, figures)
-        return tuple(Check.of(self.recipe, check) for check in (*checks, *limits_held(self.recipe, figures, checks)))
+    @property
+    def kind(self) -> OwnKind[Any, Any]:
+        """The kind of the cam in a run."""
+        from camgeo.capabilities.linear.pipeline import PLATES
 
-    @cached_property
-    def figures(self) -> Figures:
-        """The figures of the plate by name, each with its place over the travel."""
-        found = {}
-        for figure in figures_of(self._design):
-            value, unit = in_units(self.recipe, figure.value, figure.unit)
-            at, at_unit = in_units(self.recipe, figure.at, "mm")
-            finite = value is not None and bool(np.isfinite(value))
-            found[figure.name] = Figure(value if finite else None, unit, at, "" if finite else "nowhere", at_unit)
-        return Figures(found)
+        return PLATES
 
     @property
     def travel(self) -> float:

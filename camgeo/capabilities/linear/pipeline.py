@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 from camgeo.capabilities.linear.checks_of import design_checks, limits_held, remarks_on
 from camgeo.capabilities.linear.design import designed, stated_motion
@@ -28,29 +28,11 @@ if TYPE_CHECKING:
     from camgeo.report.page.scene import Scene
     from kin.linear.verdict import PlateVerdict
     from kin.numeric.arrays import Array
-    from kin.numeric.check import Check
-
-
-def _examined(design: LinearDesign, _: Clock) -> tuple[list[Check], tuple[Figure, ...]]:
-    figures = tuple(figures_of(design))
-    return [*design_checks(design, figures)], figures
-
-
-def _limited(design: LinearDesign, figures: Sequence[Figure], checks: Sequence[Check]) -> list[Check]:
-    return limits_held(design.recipe, figures, checks)
 
 
 def _told(design: LinearDesign, figures: Sequence[Figure]) -> Told:
     unit = report_unit(design.recipe, design.path.guide.unit)
     return Told(design.recipe.follower.name, remarks_on(design, figures), design.motion.kept, unit)
-
-
-def _section(design: LinearDesign, figures: Sequence[Figure]) -> dict[str, Any]:
-    return {"plate": plate_section(design, figures)}
-
-
-def _rows(design: LinearDesign, verdict: PlateVerdict) -> dict[str, Any]:
-    return file_rows(design.recipe, verdict)
 
 
 def _maker(design: LinearDesign, clock: Clock) -> Callable[[FileRequest, Path], Made[PlateVerdict]]:
@@ -86,11 +68,13 @@ def _mesh(design: LinearDesign, request: FileRequest) -> Mesh:
 
 PLATES = OwnKind(
     designed=designed,
-    examined=_examined,
-    limited=_limited,
+    figures=figures_of,
+    at_unit="mm",
+    checks=design_checks,
+    limited=limits_held,
     told=_told,
-    section=_section,
-    rows=_rows,
+    section=lambda design, figures: {"plate": plate_section(design, figures)},
+    rows=file_rows,
     foresee=foresee,
     maker=_maker,
     judged=judged_file,

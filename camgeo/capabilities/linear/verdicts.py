@@ -11,14 +11,15 @@ from camgeo.capabilities.linear.keys import GROOVE_LAYER
 from camgeo.capabilities.linear.narrowed import narrowed
 from camgeo.capabilities.linear.plate import body_of, openings
 from camgeo.checks.declared import READABLE
-from camgeo.measures.units import in_units
+from camgeo.measures.flanks import error_entry, play_entry
 from camgeo.part.as_intent import holes_of, layers_of
 from kin.contour.holes import Hole
 from kin.linear.follower import Arm, LinearFollower, Stem
-from kin.linear.intent import Ends, Groove, Limits, PlateIntent
+from kin.linear.intent import Ends, Groove, PlateIntent
 from kin.linear.judge import judge_chains, verify
 from kin.linear.verdict import PlateVerdict
 from kin.numeric.check import about, failed
+from kin.numeric.limits import Limits
 from kin.numeric.records import replace
 from kin.read.errors import ReadError
 from kin.read.files import read_drawing
@@ -31,7 +32,7 @@ if TYPE_CHECKING:
     from camgeo.part.body import Body
     from camgeo.recipe.export import FileRequest
     from kin.judge.intent import Milling
-    from kin.linear.verdict import FlankVerdict, MotionError
+    from kin.linear.verdict import FlankVerdict
     from kin.numeric.check import Check
     from kin.read.layers import Layer
 
@@ -147,13 +148,13 @@ def _judged_grown(design: LinearDesign, path: Path, out: float, tolerance: float
     try:
         drawing = read_drawing(path, None, engraved=len(through) < len(holes), deepest=1)
     except ReadError as error:
-        return PlateVerdict(path.suffix[1:], (about(failed(READABLE.name, error.message), path.name),))
+        return PlateVerdict(path.suffix[1:], (failed(READABLE.name, error.message),)).about(path)
     chains = []
     for chain in drawing.chains:
         contour = chain.contour.mirrored().turned(math.pi) if recipe.travel == "right" else chain.contour
         chains.append(chain._replace(contour=contour.moved(0.0, out)))
     verdict = judge_chains(chains, plate, limits_of(recipe, tolerance), path.suffix[1:])
-    return replace(verdict, checks=tuple(about(check, path.name) for check in verdict.checks), units=drawing.units_mm)
+    return replace(verdict.about(path), units=drawing.units_mm)
 
 
 def _raised(guide: Arm | Stem, by: float) -> Arm | Stem:
@@ -198,30 +199,10 @@ def judged_program(
 def file_rows(recipe: LinearRecipe, verdict: PlateVerdict) -> dict[str, Any]:
     """Entries of a file in a report: what was measured on each of its flanks, and the play of a groove."""
     rows = [(flank.name, _flank(recipe, flank)) for flank in verdict.flanks]
-    entry: dict[str, Any] = {}
-    if len(rows) == 1:
-        entry |= rows[0][1]
-    elif rows:
-        entry["surfaces"] = [{"name": name, **row} for name, row in rows]
-    if verdict.play is not None:
-        play = verdict.play
-        least, unit = in_units(recipe, play.least, play.unit)
-        most, _ = in_units(recipe, play.most, play.unit)
-        places = {"min_at": play.least_at / recipe.mm, "max_at": play.most_at / recipe.mm}
-        entry["play"] = [{"between": ["lower", "upper"], "min": least, "max": most, "unit": unit, **places}]
-    return entry
+    entry: dict[str, Any] = {"surfaces": [{"name": name, **row} for name, row in rows]} if rows else {}
+    return (rows[0][1] if len(rows) == 1 else entry) | play_entry(recipe, verdict.play, "mm")
 
 
 def _flank(recipe: LinearRecipe, flank: FlankVerdict) -> dict[str, Any]:
-    error = None if flank.measured_error is None else flank.measured_error / recipe.mm
     reach = None if flank.reach is None else [length / recipe.mm for length in flank.reach]
-    motion = None if flank.motion is None else _motion(recipe, flank.motion)
-    return {"measured_error": error, "motion": motion, "reach": reach}
-
-
-def _motion(recipe: LinearRecipe, motion: MotionError) -> dict[str, Any]:
-    entry: dict[str, Any] = {}
-    for key in ("max", "least", "most", "rms", "remainder"):
-        entry[key], unit = in_units(recipe, getattr(motion, key), motion.unit)
-    at, at_unit = in_units(recipe, motion.at, "mm")
-    return {**entry, "unit": unit, "at": at, "at_unit": at_unit, "extremes": "proved"}
+    return {**error_entry(recipe, flank.measured_error, flank.motion, "mm"), "reach": reach}

@@ -7,8 +7,8 @@ camgeo.capabilities.cylindrical.root, camgeo.capabilities.cylindrical.starter,
 camgeo.capabilities.cylindrical.library, camgeo.capabilities.cylindrical.design, camgeo.capabilities.cylindrical.exact,
 camgeo.capabilities.cylindrical.checks_of, camgeo.capabilities.cylindrical.checks,
 camgeo.capabilities.cylindrical.gentler, camgeo.capabilities.cylindrical.drum_page, camgeo.output.own_kind,
-camgeo.api.own_kind,
-camgeo.output.refusals, camgeo.measures.placed, camgeo.recipe.figure_bounds.
+camgeo.api.own_kind, camgeo.output.refusals, camgeo.measures.placed, camgeo.recipe.figure_bounds,
+camgeo.measures.flanks, camgeo.fit.cells, kin.read.verdict.
 """
 
 from __future__ import annotations

@@ -168,6 +168,7 @@ def test_a_page_shows_drum_and_map_and_asks_for_nothing(tmp_path: Path) -> None:
     text = (tmp_path / "out" / "drum" / "drum.html").read_text("utf-8")
     steepest = math.degrees(math.atan(2 * 40 / math.radians(120) / 38))  # a cycloidal rise at the inner end
     assert f"{steepest:.2f}" in text
+    assert '<section aria-labelledby="figures-head">' in text
     assert not re.search(r'(?:src|href)="(?!#|data:)[^"]*//', text)
 
 

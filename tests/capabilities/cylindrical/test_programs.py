@@ -58,7 +58,7 @@ if TYPE_CHECKING:
     from pathlib import Path
 
     from camgeo.output.own_kind import Made
-    from kin.cylindrical.verdict import DrumVerdict
+    from kin.turned.verdict import TurnedVerdict
 
 OPTIONS = "axes: [X, A], cutter: 20, feed: 300, plunge: 60, spindle: 2500, depth_of_cut: 7, safe_height: 5"
 TURN = 2.0 * math.pi
@@ -238,7 +238,7 @@ def test_an_allowance_is_left_by_all_but_the_last_pass(tmp_path: Path) -> None:
 
 @pytest.mark.slow
 def test_a_cut_flank_takes_a_cutter_of_the_roller_s_size(tmp_path: Path) -> None:
-    def program_of(cutter: str) -> Made[DrumVerdict]:
+    def program_of(cutter: str) -> Made[TurnedVerdict]:
         recipe = recipe_of(program(UNDERCUT, ("cutter: 20", f"cutter: {cutter}")))
         return make(cut_short(recipe), Clock(), recipe.export.files[0], tmp_path / "drum.ngc")
 

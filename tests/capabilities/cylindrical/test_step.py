@@ -53,7 +53,7 @@ from camgeo.fit.nodes import ToleranceError
 from camgeo.formats.step import write_shape
 from camgeo.schema.errors import RecipeErrors
 from kin.cylindrical.exact import verify_surfaces
-from kin.cylindrical.intent import Limits
+from kin.numeric.limits import Limits
 from kin.numeric.records import replace
 
 if TYPE_CHECKING:
@@ -61,7 +61,7 @@ if TYPE_CHECKING:
 
     from camgeo.capabilities.cylindrical.bicubic import Bicubic
     from camgeo.capabilities.cylindrical.design import DrumDesign
-    from kin.cylindrical.verdict import DrumVerdict
+    from kin.turned.verdict import TurnedVerdict
 
 TURN = 2.0 * math.pi
 FINE = 0.003  # mm
@@ -226,11 +226,11 @@ def written(folder: Path, text: str, tolerance: float) -> tuple[Path, DrumDesign
     return folder / "drum.step", design, solid.off
 
 
-def judged(path: Path, design: DrumDesign, tolerance: float) -> DrumVerdict:
+def judged(path: Path, design: DrumDesign, tolerance: float) -> TurnedVerdict:
     return judged_file(design, path, None, tolerance)
 
 
-def refused(verdict: DrumVerdict) -> set[tuple[str, str]]:
+def refused(verdict: TurnedVerdict) -> set[tuple[str, str]]:
     return {(check.name, check.surface) for check in verdict.checks if not check.ok}
 
 

@@ -16,7 +16,7 @@ from support.heavy import ezdxf
 
 from camgeo.capabilities.indexing.development import developed_line, drawn, unrolled, unrolled_bends
 from camgeo.fit.nodes import ToleranceError
-from kin.indexing.intent import Developed
+from kin.turned.files import Developed
 
 if TYPE_CHECKING:
     from pathlib import Path

@@ -10,8 +10,9 @@ import pytest
 from capabilities.indexing.turrets import GLOBOID, TURN, Barrel, Turret, changed
 
 from kin.indexing.development import judged_line
-from kin.indexing.intent import Developed, Limits
 from kin.indexing.judge import verify_development
+from kin.numeric.limits import Limits
+from kin.turned.files import Developed
 
 LIMITS = Limits(0.01)
 THETA = np.arange(-2.0 * TURN, 2.0 * TURN, 0.005)
@@ -81,6 +82,19 @@ def test_a_bump_and_a_dent(name, by):
     assert 0.4 * abs(by) < flank.measured_error <= abs(by) + 1e-4
     if (by > 0.0) == (name == "lower"):  # in the rest the turret stands at 30 degrees
         assert flank.motion.most == pytest.approx(math.degrees(abs(by) / (60.0 * math.cos(math.pi / 6.0))), rel=0.03)
+
+
+@pytest.mark.parametrize("name", ["lower", "upper"])
+def test_a_line_across_a_track_whose_ends_are_right(name):
+    """From a line up to itself a turn later: all of its points are at one angle, and both ends are on the flank."""
+    radius = 48.0
+    (whole,) = line(BARREL, radius, name)
+    before = whole[whole[:, 0] + TURN * radius <= whole[-1, 0]]
+    start = before[len(before) // 2]
+    end = [start[0], np.interp(start[0] + TURN * radius, *whole.T)]
+    flank, checks = judged([whole, np.array([start, end])], radius, name, limits=Limits(0.1))
+    assert not checks["contour"].ok
+    assert flank.measured_error > 10.0
 
 
 @pytest.mark.parametrize("name", ["lower", "upper"])

@@ -1,6 +1,6 @@
 """Solids of indexing cams: sound ones are accepted however they are saved, planted faults are refused.
 
-Holds: kin.indexing.contour, kin.indexing.faces, kin.indexing.holding, kin.indexing.judge, kin.indexing.verdict,
+Holds: kin.indexing.contour, kin.indexing.faces, kin.indexing.holding, kin.indexing.judge, kin.turned.verdict,
 kin.indexing.volume.
 """
 
@@ -13,10 +13,10 @@ import numpy as np
 import pytest
 from capabilities.indexing.turrets import GLOBOID, Barrel, Turret, changed, made, solid, written
 
-from kin.indexing.intent import Limits
-from kin.indexing.judge import judge_mesh, verify
+from kin.indexing.judge import judge_mesh, pushed_by, verify
 from kin.indexing.rollers import Rollers
 from kin.indexing.volume import exact_volume
+from kin.numeric.limits import Limits
 from kin.read.mesh.checked import Triangles, checked
 
 TOLERANCE = 0.02
@@ -280,3 +280,8 @@ def test_what_is_no_solid(tmp_path):
     assert verdict.flanks == ()
     with pytest.raises(ValueError, match="cam"):
         verify(tmp_path / "cam.xyz", BARREL.intent, Limits(TOLERANCE))
+
+
+def test_an_edge_whose_depth_does_not_rise_with_the_angle_is_not_bounded():
+    found = pushed_by(np.array([0.2, 0.2, -0.2, 0.0, -0.1]), np.array([4.0, 0.0, 0.0, 0.0, 2.0]))
+    assert found.tolist() == [0.05, math.inf, -math.inf, -math.inf, -0.05]

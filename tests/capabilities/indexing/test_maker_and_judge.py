@@ -30,9 +30,9 @@ from camgeo.cli.main import main
 from camgeo.output.extension import numbers_of
 from kin.indexing.contour import Known, bare
 from kin.indexing.faces import Body
-from kin.indexing.intent import Limits
 from kin.indexing.judge import judge_mesh
 from kin.indexing.rollers import Rollers
+from kin.numeric.limits import Limits
 from kin.numeric.records import replace
 from kin.read.mesh.checked import Triangles, checked
 
@@ -41,7 +41,7 @@ if TYPE_CHECKING:
 
     from camgeo.capabilities.indexing.flank import Flank
     from camgeo.capabilities.indexing.sheet import Sheet
-    from kin.indexing.verdict import IndexVerdict
+    from kin.turned.verdict import TurnedVerdict
 
 TOLERANCE = 0.01
 FORMS = pytest.mark.parametrize("text", [BARREL, GLOBOID], ids=["barrel", "globoid"])
@@ -55,7 +55,7 @@ def made(text: str, tolerance: float = TOLERANCE) -> Solid:
     return mesh.points, mesh.triangles
 
 
-def judged(body: Solid, text: str, tolerance: float = TOLERANCE) -> IndexVerdict:
+def judged(body: Solid, text: str, tolerance: float = TOLERANCE) -> TurnedVerdict:
     """Verdict on a body by the cam of a text."""
     points, corners = body
     read = checked(Triangles(points[corners].astype(np.float32), "binary"), Path("cam.stl"))

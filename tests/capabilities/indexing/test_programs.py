@@ -30,15 +30,15 @@ from camgeo.cli.main import main
 from camgeo.common.clock import Clock
 from camgeo.machining.turned import cutting_of
 from camgeo.schema.errors import RecipeErrors
-from kin.indexing.intent import Limits
 from kin.indexing.program import verify_program
+from kin.numeric.limits import Limits
 from kin.numeric.records import replace
 
 if TYPE_CHECKING:
     from collections.abc import Callable
 
     from camgeo.capabilities.indexing.design import IndexDesign
-    from kin.indexing.verdict import IndexVerdict
+    from kin.turned.verdict import TurnedVerdict
 
 OPTIONS = "axes: [X, Y, A], cutter: 18, feed: 300, plunge: 60, spindle: 2500, depth_of_cut: 7, safe_height: 5"
 EIGHT = f"""cam:
@@ -71,14 +71,14 @@ def written(text: str) -> tuple[IndexDesign, str]:
         return design, path.read_text("ascii")
 
 
-def judged(folder: Path, text: str, words: str) -> IndexVerdict:
+def judged(folder: Path, text: str, words: str) -> TurnedVerdict:
     """Verdict on a program by the recipe of a text."""
     design, path = written(text)[0], folder / "index.ngc"
     path.write_text(words, "ascii")
     return judged_file(design, path, design.recipe.export.files[0], design.recipe.export.tolerance)
 
 
-def failing(verdict: IndexVerdict) -> set[str]:
+def failing(verdict: TurnedVerdict) -> set[str]:
     return {check.name for check in verdict.checks if not check.ok}
 
 

@@ -1,7 +1,7 @@
 """Indexing cams as solids, held against rollers at all angles by positions alone: every triangle lies where it should.
 
 Holds: camgeo.capabilities.indexing.solid, camgeo.capabilities.indexing.sheet, camgeo.capabilities.indexing.band,
-camgeo.capabilities.indexing.bends, camgeo.capabilities.indexing.forms.
+camgeo.capabilities.indexing.bends, camgeo.capabilities.indexing.forms, camgeo.fit.cells.
 """
 
 from __future__ import annotations

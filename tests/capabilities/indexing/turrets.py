@@ -14,7 +14,8 @@ import numpy as np
 from support.programmes import Segment, law, programme
 
 from kin.contour.holes import round_hole
-from kin.indexing.intent import Barrel, Globoid, IndexIntent
+from kin.indexing.forms import Barrel, Globoid
+from kin.indexing.intent import IndexIntent
 
 TURN = 2.0 * math.pi
 

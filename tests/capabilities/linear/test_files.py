@@ -4,7 +4,7 @@ Holds: camgeo.capabilities.linear.making, camgeo.capabilities.linear.pipeline, c
 camgeo.capabilities.linear.plate, camgeo.capabilities.linear.outline, camgeo.capabilities.linear.tables,
 camgeo.capabilities.linear.verdicts, camgeo.capabilities.linear.checks_of, camgeo.capabilities.linear.plate_page,
 camgeo.capabilities.linear.section, camgeo.capabilities.linear.narrowed, camgeo.capabilities.linear.root,
-camgeo.capabilities.linear.job, camgeo.capabilities.linear.starter.
+camgeo.capabilities.linear.job, camgeo.capabilities.linear.starter, camgeo.measures.flanks, kin.read.verdict.
 """
 
 from __future__ import annotations

@@ -74,6 +74,14 @@ def test_motion_and_flanks_of_a_groove(tmp_path: Path) -> None:
             call()
 
 
+def test_places_of_figures_are_in_the_unit_of_the_recipe(tmp_path: Path) -> None:
+    plate = cam(tmp_path, changed("units: inch\n" + PLATE, ("base: 32", "base: 1.25"), ("overrun: 6", "overrun: 0.25")))
+    steepest = plate.figures["pressure-angle"]
+    assert steepest.at_unit == "in"
+    assert plate.travel == pytest.approx(120 * 25.4)
+    assert abs(plate.motion(25.4 * steepest.at, derivative=1)) == pytest.approx(math.tan(math.radians(steepest.value)))
+
+
 def test_it_shows_itself(tmp_path: Path) -> None:
     plate = cam(tmp_path, PLATE)
     assert str(plate) == "plate: ok"

@@ -575,3 +575,21 @@ __all__ = [
     "replace",
     "resting",
 ]
+
+
+def on_flanks(read, intent, theta):
+    """How far a mesh's flanks keep the drum's own roller with ends from its place at angles (n,), an (n,) for each."""
+    from kin.cylindrical.contact import set_down
+    from kin.cylindrical.faces import Body, faces_of
+    from kin.cylindrical.gauge import gauges_of
+
+    found = []
+    for stands in faces_of(
+        Body.of(read.mesh, mirrored=intent.mirrored), intent, gauges_of(intent), read.rounding
+    ).stands:
+        gauge = replace(stands.gauge, radius=intent.follower.radius)
+        corners, reach = stands.body.corners[stands.touched], math.asin(min(1.0, gauge.reach / gauge.inner))
+        angles = np.unwrap(stands.body.phi[corners], axis=1)
+        spans = angles.min(axis=1) - reach, angles.max(axis=1) + reach
+        found.append(set_down(gauge, stands.body.points[corners], spans, theta) / gauge.lever)
+    return found

@@ -6,10 +6,12 @@ import numpy as np
 import pytest
 from capabilities.cylindrical.kin.drums import Drum, Groove, Motion, replace
 
+from kin.cylindrical import development
 from kin.cylindrical.development import judged_line
-from kin.cylindrical.intent import Developed, Limits
 from kin.cylindrical.judge import verify_development
+from kin.numeric.limits import Limits
 from kin.read.checks import UnitsError
+from kin.turned.files import Developed
 
 DRUM = Drum(track=Groove(12.5, 0.03))
 THETA = np.linspace(-0.3, 2.0 * math.pi + 0.3, 2401)
@@ -84,6 +86,16 @@ def test_a_bump_and_a_dent_between_points():
         if by > 0.0:
             assert not checks["motion"].ok
             assert getattr(flank.motion, key) == pytest.approx(by, rel=0.01)
+
+
+@pytest.mark.parametrize("name", ["lower", "pitch"])
+def test_what_too_few_points_leave_open_counts(name, monkeypatch):
+    monkeypatch.setattr(development, "MOST", 100)
+    points = line(50.0, name, theta=np.linspace(-0.3, 2.0 * math.pi + 0.3, 100))
+    flank, checks = judged(points, 50.0, name, Limits(0.05))
+    assert flank.motion.remainder > 0.005
+    assert checks["contour"].value == pytest.approx(flank.measured_error + flank.motion.remainder)
+    assert checks["motion"].value == flank.motion.bound
 
 
 def test_lines_that_do_not_go_round():

@@ -12,8 +12,8 @@ from capabilities.cylindrical.kin.drums import Drum, End, Groove, Made, Motion, 
 from support.meshfiles import in_3mf, text
 
 from kin.contour.holes import Hole
-from kin.cylindrical.intent import Limits
 from kin.cylindrical.judge import judge_mesh, verify
+from kin.numeric.limits import Limits
 from kin.read.mesh.checked import Triangles, checked
 
 DRUM = Drum(

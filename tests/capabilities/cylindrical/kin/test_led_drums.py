@@ -21,6 +21,7 @@ from capabilities.cylindrical.kin.drums import (
     Steps,
     distances,
     enveloped,
+    on_flanks,
     on_triangles,
     random_led,
     replace,
@@ -31,11 +32,12 @@ from capabilities.cylindrical.kin.figures import forces, pressure_angles, rib_th
 from kin.cylindrical.development import judged_line
 from kin.cylindrical.frame import flank_points
 from kin.cylindrical.gauge import gauges_of
-from kin.cylindrical.intent import Developed, Limits
-from kin.cylindrical.judge import judge_mesh, positions
+from kin.cylindrical.judge import judge_mesh
 from kin.cylindrical.play import exact_play
-from kin.cylindrical.volume import exact_volume
+from kin.cylindrical.volume import volume_within
+from kin.numeric.limits import Limits
 from kin.read.mesh.checked import Triangles, checked
+from kin.turned.files import Developed
 
 SEED = 52
 SWING = math.radians(30.0)
@@ -282,7 +284,7 @@ def test_an_arm_that_stands_beside_the_drum_is_refused():
 
 @pytest.mark.parametrize("drum", [BESIDE, ARM, RIB], ids=["cone beside the axis", "arm", "rib on an arm"])
 def test_the_volume_is_that_of_ever_finer_meshes(drum):
-    exact = exact_volume(drum.intent(), gauges_of(drum.intent()))
+    exact, _ = volume_within(drum.intent(), gauges_of(drum.intent()))
     coarse, fine = (
         read(Made(drum, Steps(columns, 4 * scale, 12 * scale, 6 * scale, 6 * scale))).mesh.volume
         for scale, columns in ((1, 200), (2, 400))
@@ -295,15 +297,23 @@ def test_the_volume_is_that_of_ever_finer_meshes(drum):
 def test_a_led_roller_set_down(name):
     drum = DRUMS[name]
     made, theta = Made(drum, Steps(240, 4, 8, 4, 2)), np.array([0.1, 1.0, 2.5, 4.2])
-    found = positions(read(made), drum.intent(), theta)
     names = np.array(made.names * len(made.theta))
-    for place, (own, side, _, level) in zip(found, drum.flanks, strict=True):
+    found = on_flanks(read(made), drum.intent(), theta)
+    for gives, (own, side, _, level) in zip(found, drum.flanks, strict=True):
         triangles = made.places[made.corners[(names[made.corners] == own).any(axis=1)]]
         a, b = triangles, np.roll(triangles, -1, axis=1)
         points = (a + np.linspace(0.0, 1.0, 400)[:, None, None, None] * (b - a)).reshape(-1, 3)
         held = resting(drum, points, theta, (own, side, drum.roller, level))
-        start = math.asin((drum.level - drum.arm.pivot) / drum.arm.length)
-        np.testing.assert_allclose(-side * (place - start - drum.motion(theta)), held, atol=1e-5)
+        np.testing.assert_allclose(gives, held, atol=1e-5)
+
+
+def test_the_path_of_a_roller_that_an_arm_takes_round_too_fast_is_not_judged():
+    fast = replace(ARM, motion=Motion(((SWING, 10.0, "cycloidal"), (0.0, 90.0, ""), (-SWING, 260.0, "cycloidal"))))
+    level = np.array([[0.0, 40.0], [2.0 * math.pi * 50.0, 40.0]])
+    flank, (check,) = judged_line([level], fast.intent(), Developed("L", 50.0, "pitch"), LIMITS)
+    assert not check.ok
+    assert check.detail.startswith("the arm takes its roller round as fast")
+    assert flank.motion is None
 
 
 THETA = np.linspace(-0.5, 2.0 * math.pi + 0.5, 2401)

@@ -1,6 +1,6 @@
 """Faults planted in meshes of a groove: each is refused, by the check that should find it.
 
-Holds: kin.cylindrical.edges, kin.cylindrical.faces, kin.cylindrical.verdict, kin.cylindrical.volume, kin.turned.bore.
+Holds: kin.cylindrical.edges, kin.cylindrical.faces, kin.turned.files, kin.cylindrical.volume, kin.turned.bore.
 """
 
 import math
@@ -10,8 +10,8 @@ import numpy as np
 import pytest
 from capabilities.cylindrical.kin.drums import Drum, Groove, Made, Steps, replace
 
-from kin.cylindrical.intent import Limits
 from kin.cylindrical.judge import judge_mesh
+from kin.numeric.limits import Limits
 from kin.read.mesh.checked import Triangles, checked
 
 DRUM = Drum(track=Groove(12.5, 0.03))

@@ -14,13 +14,13 @@ from support.cases import few
 from support.programmes import Segment, law, programme
 
 from kin.cylindrical.gauge import gauges_of
-from kin.cylindrical.intent import Limits
 from kin.cylindrical.lifts import Lifts
 from kin.cylindrical.program import off_path, verify_program
 from kin.cylindrical.roller import Gauge
+from kin.numeric.limits import Limits
 from kin.read.errors import ReadError
 from kin.turned.checks import Cutting
-from kin.turned.cutters import left_on
+from kin.turned.cutters import _Cutter, _least, left_on
 from kin.turned.moves import Pass, passes_of, read_turned
 
 TOLERANCE = 1e-3
@@ -610,3 +610,12 @@ def test_what_is_not_read_is_refused_with_its_line(tmp_path, words, problem):
 def test_a_feed_move_has_to_begin_somewhere(tmp_path):
     with pytest.raises(ReadError, match="from an unknown place"):
         read(tmp_path, "G21\nG90 G94\nS1000 M3\nF100\nG1 X5\nM30\n")
+
+
+@pytest.mark.parametrize("growth", [0.0, 0.1])
+def test_a_point_on_the_axis_of_a_cutter_is_as_deep_as_that_is_wide(growth):
+    """Half way through a block, where no way leads from the axis to the point."""
+    one, zero = Pass(1, 20.0, np.array([0.0, 0.02]), np.zeros(2), np.zeros(2)), np.zeros(1)
+    least, share = _least(one, np.array([0]), (np.array([0.01]), np.array([30.0]), zero), _Cutter(5.0, growth))
+    assert least == pytest.approx(-growth * 30.0)
+    assert share == pytest.approx(0.5)

@@ -9,7 +9,7 @@ from pathlib import Path
 import manifold3d
 import numpy as np
 import pytest
-from capabilities.cylindrical.kin.drums import TURN, Drum, End, Groove, Motion, replace, resting
+from capabilities.cylindrical.kin.drums import TURN, Drum, End, Groove, Motion, on_flanks, replace, resting
 from capabilities.cylindrical.kin.screws import (
     TWO_AND_ONE,
     cut,
@@ -25,12 +25,13 @@ from capabilities.cylindrical.kin.screws import (
 from kin.cylindrical.crossings import Crossings
 from kin.cylindrical.development import judged_line
 from kin.cylindrical.gauge import gauges_of
-from kin.cylindrical.intent import Developed, Limits
-from kin.cylindrical.judge import judge_mesh, positions
+from kin.cylindrical.judge import judge_mesh
 from kin.cylindrical.shoe import shoe_interference
 from kin.cylindrical.smooth import BINS, Crossed, Smooth, look
 from kin.cylindrical.volume import volume_within
+from kin.numeric.limits import Limits
 from kin.read.mesh.checked import Triangles, checked
+from kin.turned.files import Developed
 
 TOLERANCE = 0.012
 SCREW = screw()
@@ -124,8 +125,8 @@ def test_the_motion_is_that_of_points_of_the_file_in_every_turn(wide, of_wide):
     points = walls_of(SCREW, wide, chance, 60_000)
     theta = chance.uniform(0.0, 6.0 * TURN, 30)
     degrees = np.degrees(theta)
-    found = positions(read(*wide), SCREW.intent(), theta)
-    for flank, own, height in zip(verdict.flanks, SCREW.flanks, found, strict=True):
+    found = on_flanks(read(*wide), SCREW.intent(), theta)
+    for flank, own, gives in zip(verdict.flanks, SCREW.flanks, found, strict=True):
         side = own[1]
         free = np.zeros(len(theta), dtype=bool)
         for low, high in flank.free:
@@ -133,8 +134,7 @@ def test_the_motion_is_that_of_points_of_the_file_in_every_turn(wide, of_wide):
         held = resting(SCREW, points, theta, own)
         assert 0.2 < free.mean() < 0.7
         assert np.abs(held[~free]).max() < flank.motion.bound + 0.004  # points by chance leave room between them
-        set_down = -side * (height - SCREW.level - SCREW.motion(theta))
-        assert np.abs(set_down[~free]).max() <= flank.motion.bound + 1e-4
+        assert np.abs(gives[~free]).max() <= flank.motion.bound + 1e-4
         # in the middle of a crossing nothing carries
         middle = np.radians([0.5 * (low + high) for low, high in flank.free])
         assert resting(SCREW, points, middle, own).max() < -0.3

@@ -11,13 +11,19 @@ from kin.contour.contour import Contour
 from kin.law.piecewise import Piecewise
 from kin.law.segment import AffineStretch, Harmonics
 from kin.linear.follower import Arm, LinearFollower, Stem
-from kin.linear.frame import flank, frame
+from kin.linear.frame import frame
 from kin.linear.intent import Ends, PlateIntent
 from kin.linear.outline import Flank
 
 OVERRUN = 6.0
 LENGTH, LENGTH_ON_ARM = 120.0, 130.0
 TILT = math.radians(24.0)
+
+
+def flank(follower, u, side=-1, clearance=0.0):
+    """Points (n, 2), mm, touched at inputs u (n,), mm, by a roller larger by `clearance`, mm: untrimmed envelope."""
+    rows = frame(follower, u)
+    return rows.centre + side * (follower.radius + clearance) * rows.normal
 
 
 def moved(stroke=20.0, rise=50.0, back=40.0, dwell=20.0, laws=("cycloidal", "polynomial-345")):

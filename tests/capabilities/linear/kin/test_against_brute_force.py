@@ -8,11 +8,11 @@ import math
 
 import numpy as np
 import pytest
-from capabilities.linear.kin.contours import wave
+from capabilities.linear.kin.contours import flank, wave
 from support.programmes import Segment, law, programme
 
 from kin.linear.follower import Arm, LinearFollower, Stem
-from kin.linear.frame import flank, frame
+from kin.linear.frame import frame
 from kin.linear.parallels import motion_limits, parallel_lift, pressure_angles
 from kin.linear.undercut import cuts
 

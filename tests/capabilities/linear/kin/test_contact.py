@@ -8,13 +8,13 @@ from capabilities.linear.kin.contours import arcs, closed, endless, groove, inte
 from support.cases import few
 
 from kin.contour.contour import Contour
+from kin.law.motion_error import MotionError
 from kin.linear.contact import Held, RestError
 from kin.linear.flanks import Metal, held_by, judged_motion, judged_play
 from kin.linear.follower import Arm, LinearFollower, Stem
 from kin.linear.judge import positions
 from kin.linear.motion import errors, intended
 from kin.linear.outline import Flank, plate_strayed
-from kin.linear.verdict import MotionError
 from kin.numeric.records import replace
 
 FOLLOWERS = {

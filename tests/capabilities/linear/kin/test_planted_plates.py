@@ -26,10 +26,11 @@ from support.programmes import Segment, law, programme
 from kin.contour.contour import Contour
 from kin.contour.holes import Hole, round_hole
 from kin.linear.follower import Stem
-from kin.linear.intent import Ends, Groove, Limits, PlateIntent
+from kin.linear.intent import Ends, Groove, PlateIntent
 from kin.linear.judge import judge_chains, verify
 from kin.linear.outline import Flank
 from kin.linear.undercut import cuts
+from kin.numeric.limits import Limits
 from kin.numeric.records import replace
 from kin.read.nesting import ClosedContour
 

@@ -4,11 +4,10 @@ import math
 
 import numpy as np
 import pytest
-from capabilities.linear.kin.contours import endless, moved, on_arm, on_stem
+from capabilities.linear.kin.contours import endless, flank, moved, on_arm, on_stem
 from support.programmes import Segment, law, programme
 
 from kin.linear.follower import Arm, LinearFollower, Stem
-from kin.linear.frame import flank
 from kin.linear.parallels import parallel_lift, pressure_angles
 from kin.linear.undercut import cuts
 from kin.numeric.records import replace
