@@ -241,7 +241,7 @@ def test_whole_turns_cut_the_same(tmp_path: Path) -> None:
     words = written(EIGHT)[1]
     head, *passes = re.split(r"(?m)^(?=\(.*pass \d)", words)
     assert len(passes) > 1
-    turned = [altered(one, "A", lambda a, k=k: a - 720.0 + 1080.0 * k) for k, one in enumerate(passes)]
+    turned = [altered(one, "A", (1080.0 * k - 720.0).__add__) for k, one in enumerate(passes)]
     verdict = judged(tmp_path, EIGHT, "".join([head, *turned]))
     assert not failing(verdict), [str(check) for check in verdict.checks if not check.ok]
 
