@@ -107,10 +107,12 @@ class TurnedWork:
                 return count
         return MOST_PLACES
 
-    def demand_few(self, passes: int) -> None:
-        """Raise RecipeErrors for more passes than a program has."""
+    def demand_few(self, passes: int, ways: list[tuple[str, W]], last: int = 0) -> None:
+        """Raise RecipeErrors for more passes than a program has: of `ways`, in depths of cut, and `last` ones."""
         if passes > MOST_PASSES:
-            least = upward(self.cut * passes / MOST_PASSES / self.recipe.mm, 4)
+            # steps begin anew at each depth at which a way ends
+            levels = (MOST_PASSES - last) // len({name for name, _ in ways}) - len({way.end for _, way in ways}) + 1
+            least = upward((self.blank - min(way.end for _, way in ways)) / levels / self.recipe.mm, 4)
             problem, remedy = f"makes more than {MOST_PASSES} passes", f"give at least {least} {self.recipe.units}"
             raise self.recipe.error(self.key("depth_of_cut"), problem, None, remedy)
 

@@ -24,7 +24,7 @@ from kin.cylindrical.gauge import gauges_of
 from kin.cylindrical.grid import angles_for
 from kin.cylindrical.lifts import degrees_over
 from kin.cylindrical.roller import Worst
-from kin.cylindrical.shoe import shoe_interference
+from kin.cylindrical.shoe import longest_shoe, shoe_interference
 from kin.cylindrical.torn_edges import missing, triangles_at
 from kin.cylindrical.volume import volume_within
 from kin.law.motion_error import MotionError, Play
@@ -53,6 +53,7 @@ if TYPE_CHECKING:
 
 CROSSINGS, SHOE = "crossings", "shoe"
 OPEN = 0.25  # of the tolerance: what the proof may leave open, and is told
+ROUNDED = 1e-4  # by which a length that is told is shorter, so that its digits are
 SLACK = 1e-6  # of a limit that follows from the steepest slope
 
 
@@ -321,7 +322,10 @@ def led_checks(crossings: Crossings) -> list[Check]:
         checks.append(placed(check, 0.5 * (longest.low + longest.high), follower.turns))
     if follower.shoe is not None:
         interferes, at = shoe_interference(follower)
+        most = length_words((1.0 - ROUNDED) * longest_shoe(follower, crossings.tolerance), ".5g")
         told = "tips beyond the walls of the sharpest bend, in the development"
+        if interferes > crossings.tolerance:
+            told += f"; a shoe of {most} {UNIT} is within that"
         checks.append(placed(at_most(SHOE, interferes, crossings.tolerance, "mm", detail=told), at, follower.turns))
     return checks
 

@@ -28,6 +28,22 @@ def shoe_interference(follower: DrumFollower) -> tuple[float, float]:
 
     It is that of the development, the greatest between the ends of the pin; 0 where it goes through.
     """
+    bow, at = _sharpest(follower)
+    half = 0.5 * (follower.shoe or 0.0)
+    # sqrt(1/k^2 + h^2) - 1/k without a difference of great numbers
+    rise = half * half * bow / (1.0 + math.hypot(1.0, half * bow))
+    return max(rise - follower.radius, 0.0), at
+
+
+def longest_shoe(follower: DrumFollower, tolerance: float) -> float:
+    """Length, mm, of the longest shoe of the follower's width that stands out of its groove by a tolerance, mm."""
+    bow, _ = _sharpest(follower)
+    rise = follower.radius + tolerance
+    return 2.0 * math.sqrt(rise * (rise + 2.0 / bow)) if bow > 0.0 else math.inf
+
+
+def _sharpest(follower: DrumFollower) -> tuple[float, float]:
+    """Greatest curvature of the pin's path, 1/mm, at most, 0 of a straight one; and its angle, rad."""
     lifts = Lifts(follower.law, follower.turns)
     low, high = lifts.enclosed
     bend = np.maximum(np.abs(low[2]), np.abs(high[2]))
@@ -36,11 +52,4 @@ def shoe_interference(follower: DrumFollower) -> tuple[float, float]:
     r = np.clip(least / math.sqrt(2.0), follower.inner, follower.outer)
     curvature = r * bend / np.hypot(r, least) ** 3
     k = int(np.argmax(curvature))
-    half = 0.5 * (follower.shoe or 0.0)
-    at = 0.5 * float(lifts.nodes[k] + lifts.nodes[k + 1])
-    if not curvature[k] > 0.0:
-        return 0.0, at
-    bow = float(curvature[k])
-    # sqrt(1/k^2 + h^2) - 1/k without a difference of great numbers
-    rise = half * half * bow / (1.0 + math.hypot(1.0, half * bow))
-    return max(rise - follower.radius, 0.0), at
+    return max(float(curvature[k]), 0.0), 0.5 * float(lifts.nodes[k] + lifts.nodes[k + 1])

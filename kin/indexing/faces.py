@@ -52,17 +52,21 @@ class Body:
     def divided(self, intent: IndexIntent, which: Indices, longest: float) -> Body:
         """The body with some triangles, by their numbers, in quarters until no side of them is longer, mm.
 
-        The parts lie where the triangles do, beside others that are whole.
+        The parts lie where the triangles do, beside others that are whole. What is farther than that outside the box of
+        the intended cam stays whole: it is off every face by as much, and of a file in another unit it is nearly all.
         """
+        low, high = intent.ends
+        far = float(intent.form.rims(0.0, np.array(intent.ends)).max()) + longest
+        box = np.array([[-far, -far, low - longest], [far, far, high + longest]])
         places = self.points[self.corners[which]]
         size = np.linalg.norm(np.roll(places, -1, axis=1) - places, axis=2).max(axis=1, initial=0.0)
-        long = size > longest
+        long = (size > longest) & _meets(places, box)
         if not long.any():
             return self
         parts = [np.delete(self.corners, which[long], axis=0)]
         places, size, points = places[long], size[long], [self.points]
         while len(places):
-            done = size <= longest
+            done = (size <= longest) | ~_meets(places, box)
             count = sum(len(rows) for rows in points)
             points.append(places[done].reshape(-1, 3))
             parts.append(count + np.arange(3 * np.count_nonzero(done)).reshape(-1, 3))
@@ -161,6 +165,11 @@ def _layer_off(triangles: Array, intent: IndexIntent, depth: float, limits: tupl
         if not len(own):
             break
     return worst
+
+
+def _meets(places: Array, box: Array) -> Mask:
+    """Whether triangles (t, 3, 3) may meet a box, its least and its greatest corner (2, 3)."""
+    return np.asarray(((places.max(axis=1) >= box[0]) & (places.min(axis=1) <= box[1])).all(axis=1))
 
 
 def quartered(values: Array) -> Array:

@@ -198,9 +198,26 @@ class _Judged:
         """Rounding of the judge, mm."""
         return ROUNDING * (self.rollers.intent.form.radius + self.rollers.intent.length)
 
+    def _homed(self, one: Pass) -> Pass:
+        """A pass turned on by whole turns of the barrel, so that it goes along the roller that begins at `start`.
+
+        Such turns cut the same: a program may begin at any of them, or go on with the next one at each depth.
+        """
+        k = int(np.abs(one.x - self.rollers.intent.height).argmin())
+        pitches = self._rollers_on(np.array([[one.x[k], one.y[k], one.a[k]]]))[0]
+        return replace(one, a=one.a + TURN * pitches) if pitches else one
+
+    def _rollers_on(self, places: Array) -> Array:
+        """By how many pitches (n,) the roller nearest to places X, Y, A (n, 3), mm and rad, is ahead of the first."""
+        intent = self.rollers.intent
+        u, v = intent.form.plane(places[:, 0], places[:, 1], places[:, 0] - intent.height)
+        psi = intent.start + _Way(self.rollers).at(places[:, 2])[0]
+        return np.asarray(np.round((np.arctan2(v, u) - psi) / intent.pitch))
+
     def verdict(self, program: TurnedProgram, passes: list[Pass]) -> TurnedVerdict:
         """All checks, the flanks, and the play between them."""
         intent, cutting, tolerance = self.rollers.intent, self.cutting, self.limits.tolerance
+        passes = [self._homed(one) for one in passes]
         first, last = _Way(self.rollers).span
         work = Work(
             intent.form.radius, intent.form.radius - intent.form.depth, TURN * math.ceil((last - first) / TURN + 2)
@@ -280,10 +297,7 @@ class _Judged:
         one = starts[own] + step[:, None] * way
         two = one + way
         track = _Track(self.rollers, 1)
-        middle = 0.5 * (one + two)
-        u, v = intent.form.plane(middle[:, 0], middle[:, 1], middle[:, 0] - intent.height)
-        psi = intent.start + track.lifts.at(middle[:, 2])[0]
-        turns = intent.pitch * np.round((np.arctan2(v, u) - psi) / intent.pitch)
+        turns = intent.pitch * self._rollers_on(0.5 * (one + two))
         far = np.zeros(len(one))
         for at in (one, two):
             advance, *rates = track.lifts.at(at[:, 2])

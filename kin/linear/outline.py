@@ -105,7 +105,8 @@ class Flank:
             return Pitch(self.follower, periods=self.periods, switches=moved, copies=self.copies)
         slopes = np.abs(frame(self.follower, np.array(self.span), np.array([1, -1])).tangent[:, 0])
         least = float(max(slopes.min(), 1e-3))
-        long = FARTHER * (max(self.ends.overrun) + self.follower.radius) / least + (self.span[1] - self.span[0])
+        beyond = float(np.abs(self.contacts[:, 0] - self.reach).max())  # of a parallel `ends` do not tell
+        long = FARTHER * (beyond + self.follower.radius) / least + (self.span[1] - self.span[0])
         return Pitch(self.follower, (long, long), self.ends.tangent, switches=switches)
 
     @cached_property

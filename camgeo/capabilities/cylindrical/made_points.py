@@ -15,6 +15,7 @@ from camgeo.measures.extension import Results
 from camgeo.measures.units import UNIT_NAMES, in_units
 from camgeo.schema.quantity import read_quantity
 from camgeo.schema.scalars import Complaint
+from kin.cylindrical.gauge import gauges_of
 from kin.cylindrical.inspected import read_flank_points
 from kin.cylindrical.measured_flanks import MOTION, PROFILE, UNKNOWNS, UnlikeError, made_drum
 from kin.cylindrical.play import exact_play
@@ -121,8 +122,6 @@ def judge(design: DrumDesign, call: FileCall, clock: Clock) -> Results:
 
 
 def _sides(drum: DrumIntent) -> list[int]:
-    from kin.cylindrical.gauge import gauges_of
-
     return [gauge.side for gauge in gauges_of(drum)]
 
 
@@ -162,7 +161,8 @@ def _length(design: DrumDesign, name: str, given: Mapping[str, object], faults: 
 
 def _checks(design: DrumDesign, made: MadeDrum, options: _Options) -> tuple[list[Check], dict[str, str]]:
     """Checks of the profile and of the motion, where the recipe limits them, and verdicts by their names."""
-    recipe, checks, verdicts = design.recipe, [], {}
+    recipe, checks, verdicts, drum = design.recipe, [], {}, intended(design)
+    names = [gauge.name for gauge in gauges_of(drum)]
     unsure = options.error or 0.0
     rests = f"U = {unsure:.3g} mm of a point" if options.error is not None else "no uncertainty of the points is stated"
     if recipe.profile is not None:
@@ -172,7 +172,12 @@ def _checks(design: DrumDesign, made: MadeDrum, options: _Options) -> tuple[list
             detail = f"{check.detail}; {len(off)} points, {rests}"
             checks.append(replace(check, surface=name, detail=detail))
             verdicts[f"{PROFILE} {name}"] = verdict
-    limit, follower = recipe.verify.motion_error, intended(design).follower
+        for name in names:
+            if f"{PROFILE} {name}" not in verdicts:
+                unseen = failed(PROFILE, "not proved: no point is of this flank", unit="mm", limit=recipe.profile)
+                checks.append(replace(unseen, surface=name))
+                verdicts[f"{PROFILE} {name}"] = "not proved"
+    limit, follower = recipe.verify.motion_error, drum.follower
     for ring in made.rings if limit is not None else ():
         probe = follower.in_unit(1.0) * unsure * ring.most_moved
         values = np.abs(ring.error), np.hypot(ring.uncertain, probe), equal_steps(len(ring.error))
@@ -181,9 +186,12 @@ def _checks(design: DrumDesign, made: MadeDrum, options: _Options) -> tuple[list
         told = f"by {ring.count} points round a radius of {ring.radius:.6g} mm alone, {ring.waves} waves a turn"
         checks.append(replace(check, surface=name, detail=f"{check.detail}; {told}, {rests}"))
         verdicts[f"{MOTION} {name} {ring.radius:.6g}"] = verdict
-    if limit is not None and not made.rings:
-        checks.append(failed(MOTION, f"not proved: {NO_RING}", unit=follower.unit, limit=follower.in_unit(limit)))
-        verdicts[MOTION] = "not proved"
+    led = {made.flanks[_index(made, ring)].gauge.name for ring in made.rings}
+    for name in (names if led else [""]) if limit is not None else ():
+        if name not in led:
+            unseen = failed(MOTION, f"not proved: {NO_RING}", unit=follower.unit, limit=follower.in_unit(limit or 0.0))
+            checks.append(replace(unseen, surface=name))
+            verdicts[f"{MOTION} {name}".rstrip()] = "not proved"
     return checks, verdicts
 
 

@@ -99,6 +99,7 @@ def _planned(design: DrumDesign, request: FileRequest, work: TurnedWork, within:
     _demand_known(design, flanks, _key(design, request, "cutter"))
     finish: list[tuple[str, Way]] = []
     left = deep = 0.0
+    refused: list[tuple[Way, Off, float]] = []
     ends = recipe.roller.inner, recipe.radius
     for name, way in flanks:
         if way.alike:
@@ -114,13 +115,16 @@ def _planned(design: DrumDesign, request: FileRequest, work: TurnedWork, within:
         finish += [(name, each) for each in ways]
         left, deep = max(left, off.left), max(deep, off.deep)
         if max(off) > SETTING * within:
-            raise _refused(design, request, way, off, max(off) / (SETTING * within))
+            refused.append((way, off, max(off) / (SETTING * within)))
+    if refused:
+        raise _refused(design, request, refused)
     steps = _rough(design, request, work, flanks) if "allowance" in own else []
     if steps:
         steps += [Step(way, way.end, f"{name}, last") for name, way in finish]
+        work.demand_few(len(steps), flanks, len(finish))
     else:
         steps = [Step(way, z, name) for name, way, z in down(recipe.radius, work.cut, finish)]
-    work.demand_few(len(steps))
+        work.demand_few(len(steps), finish)
     return _Plan(steps, Bound(left, deep))
 
 
@@ -178,8 +182,9 @@ def _needs_beside(design: DrumDesign, request: FileRequest, way: Way) -> RecipeE
     return design.recipe.error(_key(design, request, "axes"), problem, None, remedy)
 
 
-def _refused(design: DrumDesign, request: FileRequest, way: Way, off: Off, over: float) -> RecipeErrors:
-    """Error of a cutter that is off by `over` times what it may."""
+def _refused(design: DrumDesign, request: FileRequest, refused: list[tuple[Way, Off, float]]) -> RecipeErrors:
+    """Error of a cutter that is off on flanks, on each by so many times what it may; its remedies serve for all."""
+    way, off, over = max(refused, key=lambda each: each[2])
     recipe, flank = design.recipe, way.flank
     remedies = [] if way.beside else ["let the machine move across the drum: axes: [X, Y, A]"]
     tolerance = recipe.tolerance(request) * over / 0.95 / recipe.mm
@@ -191,9 +196,9 @@ def _refused(design: DrumDesign, request: FileRequest, way: Way, off: Off, over:
     if abs(flank.taper - way.cutter.taper) > TAPERS:
         remedies.append(f"give {_like(design)}")
     else:
-        least = flank.radius - 0.95 * way.less / over
+        least = max(each.flank.radius - 0.95 * each.less / times for each, _, times in refused)
         size = recipe.roller.size(recipe.floor) - recipe.roller.radius + least
-        if least <= recipe.roller.radius:
+        if least <= recipe.roller.radius - request.own.get("allowance", 0.0):
             remedies.append(f"give a cutter of at least {upward(2.0 * size / recipe.mm, 5)} {recipe.units}")
     remedies.append(
         "give a greater tolerance"  # with more depths the error falls, by no share that is known before

@@ -23,6 +23,8 @@ from typing import TYPE_CHECKING, NamedTuple
 import numpy as np
 
 from camgeo.common.rounding import downward, upward
+from kin.cylindrical.follower import DrumFollower
+from kin.cylindrical.shoe import longest_shoe
 
 if TYPE_CHECKING:
     from camgeo.capabilities.cylindrical.crossings import Crossing
@@ -106,7 +108,7 @@ def demand_led(design: DrumDesign) -> None:
     recipe, roller = design.recipe, design.recipe.roller
     gap, bend = max(design.gaps, default=0.0), longest(design)
     made = design.gap_in_files
-    least, most = made + ROOM * gap + SECOND * (made - gap), (1.0 - ROOM) * bend.length
+    least, most = made + ROOM * gap + SECOND * (made - gap), (1.0 - ROOM) * min(bend.length, _told(design))
     short, long = upward(least / recipe.mm, 5), downward(most / recipe.mm, 5)
     shown, units = partial(_shown, mm=recipe.mm), recipe.units
     passes = (
@@ -135,6 +137,14 @@ def demand_led(design: DrumDesign) -> None:
                     f"{passes}, but the gap of {shown(made)} {units} where tracks cross needs a longer one: {EASED}"
                 )
         raise design.error("cam.follower.length", f"the shoe jams in the bend {where}", remedy)
+
+
+def _told(design: DrumDesign) -> float:
+    """Length, mm, of the longest shoe that the check of solids is known to accept, which knows no clearance."""
+    recipe, roller = design.recipe, design.recipe.roller
+    within = [recipe.tolerance(request) for request in recipe.export.files if request.format.solid]
+    led = DrumFollower(roller.radius, roller.inner, roller.outer, recipe.level, design.law, turns=recipe.turns)
+    return longest_shoe(led, min(within)) if within else math.inf
 
 
 def _shown(value: float, mm: float) -> str:

@@ -141,9 +141,10 @@ def _steps(
             for name, way in ways
         ]
         steps = down(work.blank, work.cut, rough) + [(f"{name}, last", way, way.end) for name, way in finish]
+        work.demand_few(len(steps), rough, len(finish))
     else:
         steps = down(work.blank, work.cut, finish)
-    work.demand_few(len(steps))
+        work.demand_few(len(steps), finish)
     return steps, left
 
 

@@ -139,6 +139,19 @@ def test_points_of_half_a_turn_prove_no_motion(drum: Flanks) -> None:
     assert [check.name for check in report.checks if not check.ok] == ["made-motion"]
 
 
+def test_a_flank_without_points_is_not_proved(drum: Flanks) -> None:
+    """The roller runs between both."""
+    lower = [place for place, name in zip(drum.places.tolist(), drum.names, strict=True) if name == "lower"]
+    path = drum.folder / "lower.csv"
+    rows = ["x_mm,y_mm,z_mm,flank", *(",".join(f"{value:.9f}" for value in place) + ",lower" for place in lower)]
+    path.write_text("\n".join([*rows, ""]), encoding="utf-8")
+    report = drum.verified(path)
+    unseen = {(check.name, check.surface) for check in report.checks if not check.ok}
+    assert unseen == {("made-profile", "upper"), ("made-motion", "upper")}
+    assert report["made"]["verdicts"]["made-profile upper"] == "not proved"
+    assert report["made"]["verdicts"]["made-motion upper"] == "not proved"
+
+
 def test_shifted_along_its_axis(drum: Flanks) -> None:
     path = drum.written(drum.places + np.array([0.0, 0.0, 0.02]))
     made = drum.verified(path)["made"]

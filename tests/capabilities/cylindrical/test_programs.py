@@ -44,11 +44,13 @@ from camgeo.api.root import root_of
 from camgeo.capabilities.cylindrical.bends import contact_turns
 from camgeo.capabilities.cylindrical.design import DrumDesign
 from camgeo.capabilities.cylindrical.making import make
+from camgeo.capabilities.cylindrical.program import write_program
 from camgeo.capabilities.cylindrical.tracks import Rib
 from camgeo.capabilities.cylindrical.verdicts import judged_file
 from camgeo.capabilities.cylindrical.ways import Cutter, Way, radially_off, set_beside, set_radially
 from camgeo.cli.main import main
 from camgeo.common.clock import Clock
+from camgeo.machining import turned
 from camgeo.schema.errors import RecipeErrors
 from kin.numeric.records import replace
 from kin.turned import cutters
@@ -354,6 +356,44 @@ def test_what_is_refused_says_what_to_give(
     assert not (tmp_path / "out").exists()
     _, report = made(changed(text, remedy))
     assert report.ok
+
+
+@pytest.mark.parametrize(
+    ("pairs", "named", "option"),
+    [
+        ([("12.5}", "12.5, clearance: 0.02}"), ("cutter: 20", "cutter: 16")], "cutter of at least", "cutter: 16"),
+        (
+            [("cutter: 20", "cutter: 18, allowance: 0.3"), ("[X, A]", "[X, Y, A]"), ("cut: 7", "cut: 0.001")],
+            "passes; give at least",
+            "cut: 0.001",
+        ),
+    ],
+    ids=["both flanks", "last passes"],
+)
+def test_what_an_error_names_is_enough(
+    pairs: list[tuple[str, str]], named: str, option: str, monkeypatch: pytest.MonkeyPatch, tmp_path: Path
+) -> None:
+    """The cutter serves for the flank that asks for more, the depth for the passes that none of it makes fewer."""
+    monkeypatch.setattr(turned, "MOST_PASSES", 20)
+    text = program(GROOVE, *pairs)
+
+    def write(text: str) -> None:
+        design = design_of(text)
+        request = design.recipe.export.files[0]
+        write_program(design, request, tmp_path / "drum.ngc", design.recipe.tolerance(request), 1.0)
+
+    with pytest.raises(RecipeErrors) as refused:
+        write(text)
+    found = re.search(rf"{named} ([\d.]+) mm", str(refused.value))
+    assert found is not None
+    write(changed(text, (option, f"{option.partition(':')[0]}: {found[1]}")))
+
+
+def test_no_cutter_is_named_that_the_allowance_refuses(tmp_path: Path) -> None:
+    design = design_of(program(GROOVE, ("cutter: 20", "cutter: 16, allowance: 0.3")))
+    request = design.recipe.export.files[0]
+    with pytest.raises(RecipeErrors, match=r"\[X, Y, A\], or give a tolerance of at least"):
+        write_program(design, request, tmp_path / "drum.ngc", 0.005, 1.0)
 
 
 def test_an_allowance_of_a_cone_takes_y(tmp_path: Path) -> None:

@@ -34,9 +34,11 @@ from camgeo.capabilities.cylindrical.figures import figures_of, volume
 from camgeo.capabilities.cylindrical.shoe import longest
 from camgeo.capabilities.cylindrical.solid import drum_mesh
 from camgeo.capabilities.cylindrical.tables import flank_table
+from camgeo.capabilities.cylindrical.verdicts import intended
 from camgeo.files.mesh import Item, Mesh
 from camgeo.output.extension import MAKING, numbers_of
 from camgeo.schema.errors import RecipeErrors
+from kin.cylindrical.shoe import shoe_interference
 
 if TYPE_CHECKING:
     from pathlib import Path
@@ -302,7 +304,10 @@ def test_a_follower_that_does_not_pass_is_refused_with_one_that_does(old: str, n
     if "missing" in text:
         assert re.search(r"at \d+ and \d+; \d+ and \d+; \d+ and \d+ degrees of the shaft, and 2 more", text)
     (length,) = re.findall(r"(?:a shoe of|at most) ([\d.]+) mm", text)
-    assert shared_design(changed(SCREW, (SHOE, f"{{kind: shoe, width: 10, length: {length}}}"))).crossings
+    design = shared_design(changed(SCREW, (SHOE, f"{{kind: shoe, width: 10, length: {length}}}")))
+    assert design.crossings
+    tolerance = design.recipe.export.tolerance
+    assert shoe_interference(intended(design).follower)[0] <= tolerance
 
 
 @pytest.mark.slow

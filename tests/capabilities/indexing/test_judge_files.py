@@ -13,6 +13,7 @@ import numpy as np
 import pytest
 from capabilities.indexing.turrets import GLOBOID, Barrel, Turret, changed, made, solid, written
 
+from kin.indexing.faces import Body
 from kin.indexing.judge import judge_mesh, pushed_by, verify
 from kin.indexing.rollers import Rollers
 from kin.indexing.volume import exact_volume
@@ -172,6 +173,15 @@ def test_a_fault_of_the_whole(fault):
 def test_a_file_of_another_cam(how, names):
     """The sound file, judged by an intent that is a little another."""
     assert names <= refused(judged(*mesh(BARREL), changed(BARREL, **how).intent))
+
+
+def test_a_file_in_another_unit_is_not_divided():
+    """At 25.4 times the size nearly all of it is beyond any roller: in parts it takes a minute."""
+    points, corners = mesh(BARREL)
+    read = checked(Triangles(25.4 * points[corners], "binary"), Path("cam.stl"))
+    body = Body.of(read.mesh, BARREL.intent)
+    divided = body.divided(BARREL.intent, np.arange(len(corners)), Rollers(BARREL.intent, TOLERANCE).longest)
+    assert len(divided.corners) < 2 * len(corners)
 
 
 @pytest.mark.costly("a boolean and a verdict")

@@ -235,6 +235,17 @@ def test_planted_faults_are_refused(tmp_path: Path, fault: str) -> None:
     assert check in failing(judged(tmp_path, EIGHT, planted))
 
 
+@pytest.mark.costly("a program is judged")
+def test_whole_turns_cut_the_same(tmp_path: Path) -> None:
+    """A barrel that is turned on by whole turns, at each depth by more of them, is the same barrel."""
+    words = written(EIGHT)[1]
+    head, *passes = re.split(r"(?m)^(?=\(.*pass \d)", words)
+    assert len(passes) > 1
+    turned = [altered(one, "A", (1080.0 * k - 720.0).__add__) for k, one in enumerate(passes)]
+    verdict = judged(tmp_path, EIGHT, "".join([head, *turned]))
+    assert not failing(verdict), [str(check) for check in verdict.checks if not check.ok]
+
+
 @pytest.mark.slow
 def test_words_too_coarse_and_a_smaller_cutter_are_refused(tmp_path: Path) -> None:
     """What rounding A to 0.01 degrees may take moves the cutter by 4 um where the turret is fast; 2 are permitted."""

@@ -26,7 +26,7 @@ from kin.cylindrical.crossings import Crossings
 from kin.cylindrical.development import judged_line
 from kin.cylindrical.gauge import gauges_of
 from kin.cylindrical.judge import judge_mesh
-from kin.cylindrical.shoe import shoe_interference
+from kin.cylindrical.shoe import longest_shoe, shoe_interference
 from kin.cylindrical.smooth import BINS, Crossed, Smooth, look
 from kin.cylindrical.volume import volume_within
 from kin.numeric.limits import Limits
@@ -358,6 +358,12 @@ def test_a_shoe_in_a_bend(stroke, length):
 def test_a_shoe_that_does_not_pass_a_bend_is_refused():
     verdict = judged(cut(SPIRAL, 180, 3, 8), replace(SPIRAL, shoe=40.0))
     assert refused(verdict) == {("shoe", "")}
+    (check,) = (check for check in verdict.checks if check.name == "shoe")
+    assert "is within that" in check.detail
+    most = longest_shoe(SPIRAL.intent().follower, TOLERANCE)
+    interferes = [shoe_interference(replace(SPIRAL, shoe=share * most).intent().follower)[0] for share in (1.0, 1.001)]
+    assert interferes[0] == pytest.approx(TOLERANCE, rel=1e-9)
+    assert interferes[1] > TOLERANCE
 
 
 @pytest.mark.slow  # two solids; every verdict on a screw has its volume

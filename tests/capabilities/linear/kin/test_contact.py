@@ -12,6 +12,7 @@ from kin.law.motion_error import MotionError
 from kin.linear.contact import Held, RestError
 from kin.linear.flanks import Metal, held_by, judged_motion, judged_play
 from kin.linear.follower import Arm, LinearFollower, Stem
+from kin.linear.intent import Ends
 from kin.linear.judge import positions
 from kin.linear.motion import errors, intended
 from kin.linear.outline import Flank, plate_strayed
@@ -162,6 +163,13 @@ def test_a_bump_between_any_two_positions_is_found_by_contact_and_a_notch_by_dis
         assert raised.most.error * follower.lever > 0.009 - chords.inside
         sunk = plate_strayed(spoiled(contour, edge, share, -0.01), flank, 1e-3)
         assert 0.01 - chords.outside - 1e-6 <= sunk.inside <= 0.01 + chords.inside + 1e-6
+
+
+def test_a_parallel_of_a_long_plate_is_as_long_as_that():
+    """A chamfer is held against it; it ended 4 radii of the roller and a length of the motion past that."""
+    parallel = Flank(on_stem(), Ends((400.0, 400.0))).inset(0.5)
+    assert parallel.reach == (-399.5, 519.5)
+    assert parallel.pitch.feet(parallel.corners).excess == pytest.approx([0.0, 0.0], abs=1e-9)
 
 
 def test_a_bump_lifts_a_knife_edge_where_no_sample_looks():
