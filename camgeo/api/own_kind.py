@@ -239,7 +239,7 @@ class DesignInRun(KindDesign):
     @property
     @abstractmethod
     def kind(self) -> OwnKind[Any, Any]:
-        """What the kind answers in a run."""
+        """The kind, whose functions give checks and figures of the design."""
 
     @cached_property
     def _figures(self) -> Sequence[Placed]:

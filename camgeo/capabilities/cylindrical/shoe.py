@@ -108,7 +108,7 @@ def demand_led(design: DrumDesign) -> None:
     recipe, roller = design.recipe, design.recipe.roller
     gap, bend = max(design.gaps, default=0.0), longest(design)
     made = design.gap_in_files
-    least, most = made + ROOM * gap + SECOND * (made - gap), (1.0 - ROOM) * min(bend.length, _told(design))
+    least, most = made + ROOM * gap + SECOND * (made - gap), (1.0 - ROOM) * min(bend.length, _accepted(design))
     short, long = upward(least / recipe.mm, 5), downward(most / recipe.mm, 5)
     shown, units = partial(_shown, mm=recipe.mm), recipe.units
     passes = (
@@ -139,7 +139,7 @@ def demand_led(design: DrumDesign) -> None:
         raise design.error("cam.follower.length", f"the shoe jams in the bend {where}", remedy)
 
 
-def _told(design: DrumDesign) -> float:
+def _accepted(design: DrumDesign) -> float:
     """Length, mm, of the longest shoe that the check of solids is known to accept, which knows no clearance."""
     recipe, roller = design.recipe, design.recipe.roller
     within = [recipe.tolerance(request) for request in recipe.export.files if request.format.solid]
