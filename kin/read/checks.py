@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import replace
 from typing import TYPE_CHECKING
 
@@ -56,9 +57,7 @@ def units_check(stated: float | None, units: float | None, unit: float, size: Ca
     """
     if stated is None and units is None:
         why = f"the drawing states no unit and is judged in that of the recipe, {unit:.9g} mm"
-        large = size()
-        by_size = (other for other in OTHERS if abs(large * other[1] / unit - 1.0) <= SIZE_SHARE)
-        name, mm, word = next(by_size, ("", unit, "mm"))
+        name, mm, word = _unit_by_size(size(), unit)
         why += f"; by its size it is drawn in {name}" if mm != unit else ""
         return failed("units", f"{why}; give it by --units, such as --units {word}", limit=UNITS_SHARE)
     if stated is None:
@@ -71,6 +70,16 @@ def units_check(stated: float | None, units: float | None, unit: float, size: Ca
             return Check("units", True, 0.0, UNITS_SHARE, "", detail=f"a drawing unit is {stated:.9g} mm, as stated")
         detail += ", as the size has it: save the file with its right unit"
     return Check("units", off <= UNITS_SHARE, off, UNITS_SHARE, "", detail=detail)
+
+
+def _unit_by_size(large: float, unit: float, share: float = SIZE_SHARE) -> tuple[str, float, str]:
+    """Name, length in mm and word in a call of the unit in which a file is by its size; "", `unit` and mm for none.
+
+    `large` is the size of what is in the file, read in `unit`, mm, over that of the exact part, and right within a
+    share of it.
+    """
+    by_size = (other for other in OTHERS if abs(large * other[1] / unit - 1.0) <= share)
+    return next(by_size, ("", unit, "mm"))
 
 
 def crossing_places(contours: Sequence[Contour], joined: float = 0.0) -> list[str]:
@@ -104,9 +113,8 @@ def thickness_check(solid: AnySolid, thickness: float, tolerance: float) -> Chec
     """
     off = max(abs(solid.z_min), abs(solid.z_max - thickness))
     detail = f"z from {span_words(solid.z_min, solid.z_max)}, 0 to {length_words(thickness, '.9g')} {UNIT} is expected"
-    for unit, mm, _ in OTHERS:
-        if mm != 1.0 and abs(mm * solid.thickness - thickness) <= 1e-3 * thickness:
-            detail += f"; as if drawn in {unit} and stated as mm"
+    name, mm, _ = _unit_by_size(solid.thickness / thickness, 1.0, 1e-3)
+    detail += f"; as if drawn in {name} and stated as mm" if mm != 1.0 else ""
     if not solid.prism:
         return failed("thickness", f"the sections at different heights differ; {detail}", unit="mm", limit=tolerance)
     checked = at_most("thickness", off, tolerance, "mm", detail=detail, slack=ROUNDING * thickness)
@@ -159,15 +167,21 @@ def unread_check(contents: Contents, error: ReadError) -> Check:
     return failed(name, f"{error.message}{remedy}")
 
 
-def enclosed_check(measured: tuple[float, float], exact: tuple[float, float], tolerance: float) -> Check:
+def enclosed_check(
+    measured: tuple[float, float], exact: tuple[float, float], tolerance: float, *, stated: bool = True
+) -> Check:
     """Check of a solid's volume, mm^3, by what a surface within a tolerance, mm, encloses.
 
     `measured` are its volume and its area, mm^2; `exact` are the volume of the exact part, and by how much it may be
-    off.
+    off; `stated` is whether the file states its unit. A failure says in which other unit the file is by its size.
     """
     (volume, area), (expected, remainder) = measured, exact
     detail = f"{length_words(volume, '.9g', 3)} {UNIT}^3, by the intent {length_words(expected, '.9g', 3)}"
     if remainder:
         detail += f", known within {length_words(remainder, '.2g', 3)} {UNIT}^3"
+    name, mm, word = _unit_by_size(math.cbrt(volume / expected), 1.0)
+    if mm != 1.0:
+        remedy = "save the file with its right unit" if stated else f"give --units {word}"
+        detail += f"; as if drawn in {name} and stated as mm: {remedy}"
     off = abs(volume - expected) + remainder
     return at_most(VOLUME, off, tolerance * area, "mm^3", detail=detail, slack=ROUNDING * expected)

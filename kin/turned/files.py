@@ -151,4 +151,4 @@ def face_check(name: str, off: float, limit: float, detail: str, slack: float) -
 def volume_check(read: CheckedMesh, exact: tuple[float, float], tolerance: float) -> Check:
     """Check of what a mesh encloses by the exact volume and by how much that may be off, mm^3; tolerance in mm."""
     area = 0.5 * float(np.sqrt(sum(part * part for part in read.mesh.area_vectors)).sum())
-    return enclosed_check((read.mesh.volume, area), exact, tolerance)
+    return enclosed_check((read.mesh.volume, area), exact, tolerance, stated=read.units_mm is not None)

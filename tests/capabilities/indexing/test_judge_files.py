@@ -184,6 +184,15 @@ def test_a_file_in_another_unit_is_not_divided():
     assert len(divided.corners) < 2 * len(corners)
 
 
+def test_a_solid_in_inches_is_refused_with_its_unit(tmp_path):
+    points, corners = mesh(BARREL)
+    path = written(tmp_path / "cam.stl", points / 25.4, corners)
+    (volume,) = (check for check in verify(path, BARREL.intent, Limits(TOLERANCE)).checks if check.name == "volume")
+    assert not volume.ok
+    assert volume.detail.endswith("; as if drawn in inches and stated as mm: give --units inch")
+    assert verify(path, BARREL.intent, Limits(TOLERANCE), units=25.4).ok
+
+
 @pytest.mark.costly("a boolean and a verdict")
 def test_walls_that_go_straight_to_the_axis():
     points, corners = made(BARREL, radial=True, **STEPS)
