@@ -12,7 +12,7 @@ async function changed() {
   if (!byId("judged").classList.contains("older")) byId("since").textContent = recipe.text === judgedText ? "" : "The recipe has changed since.";
   const turn = ++changeCount;
   await designed(recipe.name, recipe.text);
-  tab.dataset.answered = String(turn);
+  if (turn === changeCount) tab.dataset.answered = String(turn); // an older change may end later, when its slider has rested
 }
 
 async function designed(name, text) {

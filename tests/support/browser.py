@@ -164,7 +164,7 @@ class Browser:
         """Wait until an expression is true."""
         end = time.monotonic() + patience
         while not self._holds(condition):
-            assert time.monotonic() < end, f"never true: {condition}"
+            assert time.monotonic() < end, f"never true: {condition}; {self.problems}"
             time.sleep(0.05)
 
     def _holds(self, condition: str) -> bool:

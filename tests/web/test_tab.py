@@ -365,6 +365,24 @@ def test_of_designs_that_wait_the_newest_is_made(page: tab.Tab) -> None:
     assert page.text == TEXTS["disc-roller"]
 
 
+def test_a_change_that_rests_does_not_stand_for_a_newer_one_that_was_answered_before_it(page: tab.Tab) -> None:
+    """A slider that is held rests before its cam is checked; where it is let go meanwhile, the next cam does not."""
+    page.ask("""(async () => {
+      const pause = (ms) => new Promise((done) => setTimeout(done, ms));
+      work.ask = async (call) => (call === "picture" ? {} : null);
+      step = "slide";
+      const older = changed();
+      await pause(20);
+      step = null;
+      recipe.text += "\\n";
+      await changed();
+      await older;
+      delete work.ask;
+    })()""")
+    page.settle()
+    page.load("four-bar", TEXTS["four-bar"])
+
+
 def test_no_verdict_stands_beside_another_number(page: tab.Tab) -> None:
     page.load("disc-roller", TEXTS["disc-roller"])
     verdicts = page.ask("""(async () => {
