@@ -123,7 +123,7 @@ def test_the_parts_of_a_stretch_follow_one_another_down_to_the_last_digits(name:
             assert np.diff(part.theta).min() > 1e-6
 
 
-@pytest.mark.costly("splines of a drum of two turns, and places on the worst of them against pins at all angles")
+@pytest.mark.slow
 def test_a_jump_of_the_jerk_beneath_an_edge_counts(monkeypatch: pytest.MonkeyPatch) -> None:
     """The break lies between the ends of a line; as if it were not there fewer columns would be proved."""
     design, r = designed("short"), np.linspace(25.0, 30.0, 9)

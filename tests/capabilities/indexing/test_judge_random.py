@@ -34,7 +34,7 @@ def turrets(draw):
     return changed(turret, stops=stops, over=over, start=start, clearance=clearance)
 
 
-@pytest.mark.costly("points against all rollers for each turret")
+@pytest.mark.slow
 @settings(max_examples=3, deadline=None, suppress_health_check=list(HealthCheck))
 @given(turrets(), st.integers(0, 10**6))
 def test_what_is_swept_is_what_rollers_reach(turret, seed):

@@ -95,8 +95,7 @@ def simplified(text: str) -> Solid:
     return np.array(mesh.vert_properties)[:, :3], np.array(mesh.tri_verts).astype(np.int64)
 
 
-@pytest.mark.thin(2)
-@pytest.mark.costly("a verdict on a fine solid")
+@pytest.mark.slow
 @FORMS
 def test_a_sound_cam_is_accepted_with_fewer_triangles(text: str) -> None:
     """In a dwell few slender triangles are left of a flank: along them the worst angle is uneven."""

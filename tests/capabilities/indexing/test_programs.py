@@ -235,7 +235,7 @@ def test_planted_faults_are_refused(tmp_path: Path, fault: str) -> None:
     assert check in failing(judged(tmp_path, EIGHT, planted))
 
 
-@pytest.mark.costly("a program is judged")
+@pytest.mark.slow
 def test_whole_turns_cut_the_same(tmp_path: Path) -> None:
     """A barrel that is turned on by whole turns, at each depth by more of them, is the same barrel."""
     words = written(EIGHT)[1]

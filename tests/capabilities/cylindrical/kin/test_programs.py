@@ -242,6 +242,7 @@ def judged_turns(folder, text, drum=None):
     return verify_program(path, drum or crossing_drum(), CUTTING, Limits(TOLERANCE))
 
 
+@pytest.mark.slow
 def test_a_groove_that_crosses_itself_is_cut_by_all_its_turns(tmp_path):
     verdict = judged_turns(tmp_path, text_of_turns())
     assert verdict.ok, verdict.checks

@@ -118,6 +118,7 @@ def test_a_tall_screw_in_wide_triangles_is_accepted(columns):
     assert max(flank.measured_error for flank in verdict.flanks) > 0.5 * off.max()
 
 
+@pytest.mark.slow
 def test_the_motion_is_that_of_points_of_the_file_in_every_turn(wide, of_wide):
     verdict = of_wide
     assert verdict.ok, [check for check in verdict.checks if not check.ok]
@@ -418,7 +419,7 @@ def looked_at(drum, surface, flank=0, carried=()):
     return look(gauges[flank], [surface], TOLERANCE, 720 * drum.motion.turns, Crossed(gauges, carries))
 
 
-@pytest.mark.costly("patches over all turns against the rollers of all")
+@pytest.mark.slow
 def test_patches_of_a_flank_stand_in_the_way_of_other_turns_where_it_goes_on():
     """Depths within the roller of another turn are those of positions; without such patches there are none."""
     flank, count = SPIRAL.flanks[0], COLUMNS * SPIRAL.motion.turns
