@@ -107,6 +107,18 @@ class Tab:
         """Wait until every change of the recipe is answered, and the worker rests."""
         self.wait("document.body.dataset.answered === String(changeCount) && !work.current")
 
+    def written(self) -> str:
+        """Write the recipe to the address at once, not a little later, and give what stands behind its #."""
+        self.ask("writeAddress()")
+        address: str = self.ask("writing.then(() => location.hash)")
+        return address
+
+    def reload(self) -> None:
+        """Load it anew, and wait until Python is there."""
+        self.ask("window.former = true")
+        self.browser.call("Page.reload")
+        self.wait("!window.former && document.body?.dataset.loaded")
+
     def rest(self) -> None:
         """Wait until nothing scrolls the page or changes its height any more."""
         self.ask(RESTED)

@@ -93,8 +93,7 @@ def test_cards_are_in_reach_and_on_a_phone_one_opens_by_a_finger(browser: Browse
     root = "document.documentElement.dataset"
     assert page.ask(f"[Number({root}.at), {root}.playing]") == [wanted[4], "false"]
     assert page.ask("document.querySelectorAll('#drawing .kept path').length") > 0
-    page.ask("writeAddress()")
-    page.ask("writing")
+    page.written()
     page.click("play")
     page.wait(f"Number({root}.at) !== {wanted[4]}")
     page.enter("export.tolerance", "0.02")  # and goes on from where it is

@@ -36,8 +36,7 @@ def test_the_whole_way(address: str, tmp_path: Path) -> None:
         links = page.ask("[...document.querySelectorAll('#files a')].map((one) => one.download).join(' ')")
         assert "toy.stl" in links.split()
         # a step back, and a link that is cut
-        page.ask("writeAddress()")
-        page.ask("writing.then(() => 1)")
+        page.written()
         page.ask("history.back()")
         page.wait("!recipe.text.includes('12.5')")
         page.settle()

@@ -38,11 +38,7 @@ def test_no_link_that_is_cut_or_has_another_letter_passes(page: tab.Tab) -> None
 
 def test_a_spoilt_link_shows_nothing_and_stays_until_a_recipe_is_begun(page: tab.Tab) -> None:
     page.load("disc-roller", TEXT)
-    page.click("link")
-    page.wait("location.hash.startsWith('#r=')")
-    page.ask("writeAddress()")
-    page.ask("writing")
-    cut = page.ask("own.slice(0, -4)")
+    cut = page.written()[:-4]
     page.ask(f"location.hash = {cut!r}")
     page.wait("!byId('notice').hidden")
     page.settle()
@@ -55,8 +51,8 @@ def test_a_spoilt_link_shows_nothing_and_stays_until_a_recipe_is_begun(page: tab
     assert page.ask(
         "[...document.querySelectorAll('#main > :not(.begin, .desk)')].every((e) => e.offsetParent === null)"
     )
-    page.browser.call("Page.reload")
-    page.wait("document.body?.dataset.loaded && !byId('notice').hidden")  # Python is there, and nothing comes of it
+    page.reload()
+    page.wait("!byId('notice').hidden")  # Python is there, and nothing comes of it
     page.ask("new Promise((done) => setTimeout(done, 600))")
     assert page.ask("location.hash") == cut
     assert page.text_of("verdict") == "no recipe"
@@ -73,8 +69,7 @@ def test_a_copied_link_leaves_comments_out_and_says_so(page: tab.Tab) -> None:
     page.load("disc-roller", TEXT)
     page.browser.call("Browser.grantPermissions", permissions=["clipboardReadWrite", "clipboardSanitizedWrite"])
     page.ask("navigator.clipboard.writeText = async (text) => { window.copied = text; }")
-    page.ask("writeAddress()")
-    page.ask("writing")
+    page.written()
     page.click("link")
     page.wait("byId('told').textContent")
     assert "without its comments" in page.text_of("told")
@@ -93,8 +88,7 @@ def test_a_copied_link_leaves_comments_out_and_says_so(page: tab.Tab) -> None:
 
 def test_a_finished_step_is_one_entry_and_going_back_undoes_it(page: tab.Tab) -> None:
     page.load("disc-roller", TEXT)
-    page.ask("writeAddress()")
-    page.ask("writing")
+    page.written()
     # the history of a browser keeps fifty entries, and other tests may have filled it: entries are counted as they come
     page.ask(
         "window.entries = 0;"
@@ -111,8 +105,7 @@ def test_a_finished_step_is_one_entry_and_going_back_undoes_it(page: tab.Tab) ->
     page.ask("step = null")
     page.enter("part.bore", "12")
     page.enter("part.bore", "13")
-    page.ask("writeAddress()")
-    page.ask("writing")
+    page.written()
     steps = page.ask("recipe.done.length")
     assert page.ask("delete history.pushState && entries") == 3
     page.ask("history.back()")
@@ -134,8 +127,7 @@ def test_going_back_is_not_undone_by_an_address_that_is_still_to_be_written(page
     page.load("disc-roller", TEXT)
     for value in ("12", "13"):
         page.enter("part.bore", value)
-        page.ask("writeAddress()")
-        page.ask("writing")
+        page.written()
     page.ask("recipe.name = 'other'; remember(); writeAddress(); history.back()")
     page.ask("writing")
     page.wait("recipe.text.includes('bore: 12')")
@@ -145,8 +137,7 @@ def test_going_back_is_not_undone_by_an_address_that_is_still_to_be_written(page
 
 def test_the_last_design_stays_in_this_browser_until_it_is_forgotten(page: tab.Tab) -> None:
     page.load("kept", TEXT.replace("bore: 10", "bore: 11"))
-    page.ask("writeAddress()")
-    page.ask("writing")
+    page.written()
     page.ask("""(() => {
       const other = document.createElement("iframe");
       other.id = "other";
@@ -157,8 +148,7 @@ def test_the_last_design_stays_in_this_browser_until_it_is_forgotten(page: tab.T
     page.click("forget")
     assert page.ask("localStorage.length") == 0
     page.enter("part.bore", "14")
-    page.ask("writeAddress()")
-    page.ask("writing")
+    page.written()
     assert page.ask("localStorage.length") == 0  # nor what comes after
     assert "Forgotten" in page.text_of("keeps")
     page.ask("byId('other').remove()")

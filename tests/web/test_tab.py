@@ -192,8 +192,8 @@ def test_a_cam_that_undercuts_says_where_and_what_would_do(page: tab.Tab) -> Non
 def test_files_are_made_judged_and_downloaded(page: tab.Tab, tmp_path: Path) -> None:
     page.load("support", TEXTS["support"])
     page.browser.call("Page.setDownloadBehavior", behavior="allow", downloadPath=str(tmp_path))
-    page.ask("writeAddress()")
-    before = page.ask("writing.then(() => history.length)")
+    page.written()
+    before = page.ask("history.length")
     page.judged("make")
     assert page.ask("history.length") == before  # the judged page is no entry
     assert page.text_of("outcome").startswith("support: ok")
@@ -436,19 +436,16 @@ def test_stop_ends_the_worker_and_another_one_goes_on(page: tab.Tab) -> None:
 
 def test_a_reload_and_a_link_keep_the_recipe_with_its_tables(page: tab.Tab) -> None:
     tables = {"disc-table.csv": (RECIPES / "disc-table.csv").read_text("utf-8")}
-    former = page.ask("location.hash")
     page.load("disc-table", TEXTS["disc-table.yaml"], tables)
     assert page.text_of("faults") == ""
-    page.click("link")
-    page.wait(f"location.hash.length > 100 && location.hash !== {former!r}")  # the address follows a little later
-    link = page.ask("location.hash")
-    page.browser.call("Page.reload")
-    page.wait("window.recipe === undefined && document.body?.dataset.loaded && Number(document.body.dataset.shown) > 0")
+    page.wait("!due")  # the address follows a little later
+    link = page.ask("writing.then(() => location.hash)")
+    page.reload()
     page.settle()
     assert page.text == TEXTS["disc-table.yaml"]
     assert page.text_of("faults") == ""
     page.load("support", TEXTS["support"])
-    page.wait(f"location.hash !== {link!r}")  # the address follows
+    assert page.written() != link
     page.ask(f"location.hash = {link!r}")
     page.wait("recipe.name === 'disc-table'")
     page.settle()
