@@ -290,6 +290,7 @@ def test_files_that_are_not_named_are_left_alone(project: Pytester) -> None:
 # --- what a failure says ----------------------------------------------------------------------------------------------
 
 
+@pytest.mark.slow
 def test_a_failure_tells_figure_limit_place_and_remedy(project: Pytester) -> None:
     text = SMALL + "verify: {motion_error: 0.001}\n"
     path = add(project, "small", text)

@@ -37,6 +37,7 @@ def undercut(recipe):
     return {check.surface: check.detail for check in failed}
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("base", "radius", "flank"),
     [(16, 26, "outer"), pytest.param(20, 22, "inner", marks=pytest.mark.slow)],

@@ -130,7 +130,7 @@ def test_a_sweep(tmp_path: Path, jobs: str) -> None:
     assert "interrupted" in said
 
 
-@pytest.mark.thin(3)
+@pytest.mark.slow
 @pytest.mark.parametrize(
     "late",
     [

@@ -166,7 +166,7 @@ def test_no_field_of_a_record_is_left_unread(name: str) -> None:
     assert off(name, exchanged(contacts)) > SEEN
 
 
-@pytest.mark.costly("each arrangement is made, as the tests behind it need it")
+@pytest.mark.slow
 def test_every_arrangement_is_there() -> None:
     """Each pair of guide and touch that a recipe may give, with one contact and with two."""
     there = {(type(one.guide), type(one.touch), len(held(name)[0])) for name in RECIPES for one in held(name)[0]}

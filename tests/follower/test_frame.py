@@ -79,7 +79,7 @@ def laid(mechanism, vertices, rest=WAYS[0]):
 # --- against plain geometry -------------------------------------------------------------------------------------------
 
 
-@pytest.mark.thin(12)
+@pytest.mark.slow
 def test_outputs_by_vertices(pair):
     """In every way of resting, at given shaft angles: the same output as of the turned vertices in a rigid frame."""
     mechanism, bench = pair

@@ -143,7 +143,7 @@ def test_solid_is_closed_oriented_and_of_exact_volume(tmp_path, shape, bore):
     assert set(np.unique(z).tolist()) == {0.0, 8.25}
 
 
-@pytest.mark.thin(2)
+@pytest.mark.slow
 @pytest.mark.parametrize("shape", SHAPES)
 @pytest.mark.parametrize("bore", [None, 8.0])
 def test_second_readers_agree(tmp_path, shape, bore):

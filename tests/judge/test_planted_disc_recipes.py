@@ -91,7 +91,7 @@ def test_a_table_of_cam_degrees_read_as_crank_degrees(tmp_path: Path) -> None:
     assert failures(meant, exported(tmp_path / "mistaken.yaml")) == {"contour", "motion"}
 
 
-@pytest.mark.thin(16)
+@pytest.mark.slow
 @pytest.mark.parametrize("name", FOLLOWERS)
 def test_a_motion_of_crank_degrees_on_the_cam(tmp_path: Path, name: str) -> None:
     recipe = written(tmp_path / "meant", FOLLOWERS[name])

@@ -258,7 +258,7 @@ def test_a_segment_of_no_length(tmp_path, cam):
     assert "closed" in failures(write_dxf(tmp_path / "cam.dxf", doubled), intent)
 
 
-@pytest.mark.thin(3)
+@pytest.mark.slow
 def test_a_mirrored_cam(tmp_path, cam):
     intent, points = cam
     mirrored = points(EDGES) * [1.0, -1.0]

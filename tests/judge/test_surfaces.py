@@ -190,7 +190,7 @@ def test_planted_faults_are_caught(tmp_path, fault, caught):
     assert failures(verify(path, groove(law_of(WAVY), bore=10.0), 90, LIMITS)) >= caught
 
 
-@pytest.mark.thin(4)
+@pytest.mark.slow
 @pytest.mark.parametrize("by", [0.9, 1.1])
 @pytest.mark.parametrize("sign", [-1.0, 1.0])
 def test_the_closure_has_two_sides(tmp_path, by, sign):

@@ -237,6 +237,7 @@ def test_enclosures_hold_the_derivatives(rise, over, links, interval):
     assert (rad < 1e-9 * (1 + np.abs(mid))).all()
 
 
+@pytest.mark.slow
 @given(
     st.floats(-40, 40).filter(lambda h: abs(h) > 1),
     st.floats(60, 150),

@@ -81,7 +81,7 @@ def test_cam_of_four_arcs() -> None:
     assert [off_centre.area, off_centre.x, off_centre.y, off_centre.polar] == pytest.approx(expected, rel=1e-14)
 
 
-@pytest.mark.thin(4)
+@pytest.mark.slow
 @pytest.mark.parametrize(
     "text",
     [

@@ -77,7 +77,7 @@ def passes(recipe: Any) -> bool:
     return all(check.ok for check in camgeo.check(recipe).checks if check.file is None)
 
 
-@pytest.mark.thin(3)
+@pytest.mark.slow
 @pytest.mark.parametrize("name", few(CASES, 3))
 def test_the_angle_found_holds_and_a_hundredth_less_does_not(name: str) -> None:
     recipe = camgeo.load(CASES[name])

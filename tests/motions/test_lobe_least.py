@@ -21,6 +21,7 @@ def checked(width: float, more: str = "") -> camgeo.Report:
     return camgeo.check(camgeo.load(CAM.replace("WIDTH", f"{width}").replace("MORE", more)))
 
 
+@pytest.mark.slow
 def test_a_narrower_face_does_where_the_velocity_is_least() -> None:
     """The remedy of the check is tried: the face holds, and the acceleration pays for it."""
     usual = checked(60.0)

@@ -51,7 +51,7 @@ def motion(lead: float) -> Told:
     return Told(3.0 + 12.0 * (u - np.sin(TURN * u) / TURN) - 6.0 * (1.0 - np.cos(math.pi * v)))
 
 
-@pytest.mark.costly("all laws are tried on each stroke")
+@pytest.mark.slow
 def test_segments_are_those_of_the_motion():
     told = motion(0.0)
     programme = recognised(told, 0.01, "mm")
@@ -78,7 +78,7 @@ def test_a_turn_that_begins_in_a_stroke_has_none():
     assert known.segments() == (None, STROKES_BEGIN)
 
 
-@pytest.mark.costly("all laws are tried on each stroke")
+@pytest.mark.slow
 def test_laws_that_leave_more_than_may_be_are_none():
     told = motion(0.0)
     told.position += 0.1 * np.sin(9.0 * told.shaft)

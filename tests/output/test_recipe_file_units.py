@@ -150,7 +150,7 @@ def test_what_is_rounded_is_the_same_within_the_tolerance(kind: str, made: Made)
     assert not sizes or sizes[0] == pytest.approx(sizes[1], abs=TOLERANCE)
 
 
-@pytest.mark.thin(4)
+@pytest.mark.slow
 @pytest.mark.parametrize(
     "kind",
     [

@@ -77,7 +77,7 @@ def alike(one: Any, other: Any, name: str = "", scale: float = 1.0) -> int:
     return int(scale != 1.0)
 
 
-@pytest.mark.thin(3)
+@pytest.mark.slow
 @pytest.mark.parametrize(("text", "lengths"), [(ROLLER, 20), (LINKED, 60), (SLIDING, 60)])
 def test_reports(text: str, lengths: int) -> None:
     millimetres, inches = (pipeline.check(recipe).report for recipe in recipes(text))

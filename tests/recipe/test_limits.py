@@ -423,6 +423,7 @@ def test_bounds_that_contradict_each_other() -> None:
 # --- failures in words ------------------------------------------------------------------------------------------------
 
 
+@pytest.mark.slow
 def test_the_exit_status_and_the_text(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     path = tmp_path / "roller.yaml"
     path.write_text(ROLLER + "limits: {pressure-angle: {at_most: 45}}\n")

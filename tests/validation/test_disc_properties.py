@@ -10,6 +10,7 @@ import math
 from typing import TYPE_CHECKING
 
 import numpy as np
+import pytest
 from hypothesis import HealthCheck, Phase, assume, given, settings
 from hypothesis import strategies as st
 from support.brute_disc import LAWS, Touching, motion, polygon
@@ -63,6 +64,7 @@ def motions(draw: st.DrawFn, stroke: float) -> list[tuple[float, float, str]]:
     return rows
 
 
+@pytest.mark.slow
 @settings(
     max_examples=examples(24),
     suppress_health_check=[HealthCheck.function_scoped_fixture],

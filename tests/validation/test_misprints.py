@@ -296,6 +296,7 @@ def misprints(workshop):
     return [Misprint(where, printed, right, by, of(workshop)) for where, (printed, right, by, of) in CASES.items()]
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("where", CASES)
 def test_the_printed_form_is_wrong_and_the_right_one_right(workshop, where):
     printed, right = CASES[where][-1](workshop)

@@ -214,8 +214,7 @@ FOLLOWER: dict[str, Any] = {
 
 
 # needs: follow
-@pytest.mark.thin(6)
-@pytest.mark.costly("laws are fitted to what is followed")
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("name", "follower", "words"),
     [

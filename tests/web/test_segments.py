@@ -237,6 +237,7 @@ FREE = DISC.replace("over: 110,", "over: least,").replace("dwell: 80", "dwell: r
 )
 
 
+@pytest.mark.slow
 def test_an_angle_that_is_left_open_is_drawn_and_stays_open() -> None:
     source, stated = Source.of(FREE, "x"), live._shown(camgeo.load(FREE)).motion()
     motion = live.drawn(source, stated)

@@ -220,7 +220,7 @@ STRETCHES = {
 }
 
 
-@pytest.mark.thin(2)
+@pytest.mark.slow
 @pytest.mark.parametrize("name", ["shaft.svg", "shaft.html"])
 def test_a_machine_has_a_bar_for_each_stretch_split_at_360(machine: tuple[str, camgeo.Report], name: str) -> None:
     """Case f24: rises, dwells and returns over the machine's angle."""

@@ -501,6 +501,7 @@ def test_a_swing_that_no_drum_makes_gentle(tmp_path: Path) -> None:
     assert "radius" not in told
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     "name",
     [

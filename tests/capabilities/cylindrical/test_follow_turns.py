@@ -60,6 +60,7 @@ def columns_of(middle: np.ndarray, half: np.ndarray, top: float) -> list[Column]
     return columns
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("seed", range(6))
 def test_turns_are_told_from_one_another(seed: int) -> None:
     """Middles are those of the pin; a wall stands where no other turn has taken it."""

@@ -77,7 +77,7 @@ def test_its_own_inspection_table_is_right(text: str, tmp_path: Path) -> None:
     assert {ring["flank"] for ring in made["rings"]} == set(own.names)
 
 
-@pytest.mark.costly("points of whole flanks are found from rollers at all angles")
+@pytest.mark.slow
 def test_a_cone_on_an_arm_in_inches(tmp_path: Path) -> None:
     """Of a drum that turns the other way; 0.0004 in too large all round is what each point is off."""
     text = changed(
@@ -100,6 +100,7 @@ def test_a_cone_on_an_arm_in_inches(tmp_path: Path) -> None:
     assert 0.01016 / 90.0 < math.radians(ring["mean"]) < 0.01016 / 90.0 * 1.2
 
 
+@pytest.mark.slow
 def test_metal_too_large_with_a_burr(drum: Flanks) -> None:
     """5 um all round lift the roller by 5 um/cos a; a burr of 20 um fails the profile and is left out of the motion."""
     e = np.full(len(drum.places), 0.005)
@@ -152,6 +153,7 @@ def test_a_flank_without_points_is_not_proved(drum: Flanks) -> None:
     assert report["made"]["verdicts"]["made-motion upper"] == "not proved"
 
 
+@pytest.mark.slow
 def test_shifted_along_its_axis(drum: Flanks) -> None:
     path = drum.written(drum.places + np.array([0.0, 0.0, 0.02]))
     made = drum.verified(path)["made"]
@@ -163,7 +165,7 @@ def test_shifted_along_its_axis(drum: Flanks) -> None:
     assert "turned about z" not in placed["placing"]
 
 
-@pytest.mark.costly("points of whole flanks are found from rollers at all angles")
+@pytest.mark.slow
 def test_turned(drum: Flanks) -> None:
     """0.1 degrees counter-clockwise; the motion is late by as much, which moves it by S' at the steepest place."""
     angle = math.radians(0.1)
@@ -206,6 +208,7 @@ def test_a_flank_of_another_lift(lift: str, told: str | None, drum: Flanks, tmp_
     assert made["rings"][0]["worst"] == pytest.approx(0.05, abs=5e-4)
 
 
+@pytest.mark.slow
 def test_noise_has_an_uncertainty(drum: Flanks) -> None:
     """Of random errors of 2 um the smoothed motion shows less, and its uncertainty covers nearly all of it."""
     noise = np.random.default_rng(1).normal(0.0, 0.002, len(drum.places))
@@ -396,6 +399,7 @@ def test_a_page_a_drawing_and_a_table_of_points(drum: Flanks, tmp_path: Path) ->
     assert lengths[0] == pytest.approx(-0.005 * magnified, rel=5e-2)
 
 
+@pytest.mark.slow
 def test_points_of_a_drum_that_turns_the_other_way_stand_in_the_axes_of_their_file(tmp_path: Path) -> None:
     own = Flanks(f"rotation: ccw\n{PLAY}", tmp_path)
     written = own.verified(own.table, out=str(tmp_path / "measured"))["made"]["written"]

@@ -125,8 +125,7 @@ CASES = {
 }
 
 
-@pytest.mark.costly("brute force over the positions of a cutter")
-@pytest.mark.thin(4)
+@pytest.mark.slow
 @pytest.mark.parametrize("case", CASES)
 def test_the_cutter_leaves_the_flanks_that_rollers_leave(
     made: Callable[[str], tuple[Path, camgeo.Report]], case: str
@@ -219,6 +218,7 @@ def test_inches_and_a_feed_by_the_minute(tmp_path: Path) -> None:
     assert max(run[:, 0].max() for run in positions(words(tmp_path))) == pytest.approx(60.0 / 25.4, abs=1e-4)
 
 
+@pytest.mark.slow
 def test_an_allowance_is_left_by_all_but_the_last_pass(tmp_path: Path) -> None:
     text = program(GROOVE, ("[X, A]", "[X, Y, A]"), ("cutter: 20", "cutter: 18, allowance: 0.3"))
     assert exported(tmp_path, text).ok
@@ -358,6 +358,7 @@ def test_what_is_refused_says_what_to_give(
     assert report.ok
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("pairs", "named", "option"),
     [
@@ -492,8 +493,7 @@ def test_random_led_drums_are_milled_as_rollers_leave_them(tmp_path: Path, seed:
     assert stands_off(tmp_path, text, lift, 20) < recipe.export.tolerance + 2e-4
 
 
-@pytest.mark.thin(3)
-@pytest.mark.costly("programs of several rollers are made and judged")
+@pytest.mark.slow
 @pytest.mark.parametrize("text", [ARM, LEADING, CONE, CONE_ON_ARM, BESIDE, RIB_ON_ARM], ids=lambda text: text[60:130])
 def test_a_cutter_like_the_roller_stands_in_its_place(tmp_path: Path, text: str) -> None:
     """Of each position Y and X are those of the roller's axis at the angle A, within the tolerance between blocks."""
@@ -654,7 +654,7 @@ def test_depths_are_as_many_as_the_tolerance_asks_for() -> None:
     assert counts[0] < counts[2] < 8
 
 
-@pytest.mark.costly("a program and its verdict")
+@pytest.mark.slow
 @pytest.mark.parametrize("text", [GROOVE, ARM], ids=["carriage", "arm"])
 def test_a_tolerance_that_is_not_judged(text: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     """It is refused before anything is written, and the one that is told is made and judged; 4e6 points are many."""

@@ -99,13 +99,13 @@ def judged(seed: int, led: str = "carriage", *, undercut: bool = False) -> None:
     assert abs(solid.volume() - volume(design)) <= tolerance * body.area
 
 
-@pytest.mark.costly("drums of each track against positions over all of their triangles")
+@pytest.mark.slow
 @pytest.mark.parametrize("seed", range(4))
 def test_every_triangle_is_near_the_drum(seed: int) -> None:
     judged(seed)
 
 
-@pytest.mark.costly("drums of each follower against positions over all of their triangles")
+@pytest.mark.slow
 @pytest.mark.parametrize(("seed", "led"), [(0, "trailing"), (1, "cone on an arm"), (2, "beside"), (3, "apex")])
 def test_every_triangle_with_other_followers(seed: int, led: str) -> None:
     judged(seed, led)

@@ -94,7 +94,7 @@ def on_spline(part: Bicubic, share: np.ndarray) -> np.ndarray:
     return np.einsum("ia,jb,abx->ijx", basis(part.theta, theta), basis(part.r, r), part.control)
 
 
-@pytest.mark.costly("the lowest of all rollers at places of both flanks")
+@pytest.mark.slow
 @pytest.mark.parametrize("tolerance", [0.1, 0.002])
 def test_splines_are_as_near_all_rollers_as_is_proved(tolerance: float) -> None:
     design = design_of(GROOVE)
@@ -313,7 +313,7 @@ def test_random_drums_of_other_followers(tmp_path: Path, seed: int) -> None:
 
 
 @kernel
-@pytest.mark.costly("an export and its verification")
+@pytest.mark.slow
 def test_a_recipe_with_a_step_file(tmp_path: Path) -> None:
     report = exported(tmp_path, C01)
     assert report.ok
@@ -482,6 +482,7 @@ def test_a_solid_whose_faces_enclose_nothing_is_not_read(sound: tuple[str, DrumD
     assert (check.name, "its bounds do not enclose" in check.detail) == ("readable", True)
 
 
+@pytest.mark.slow
 def test_a_drum_for_another_roller_is_refused(sound: tuple[str, DrumDesign, Path]) -> None:
     text, design, folder = sound
     path = folder / "drum.step"

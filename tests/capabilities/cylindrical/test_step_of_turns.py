@@ -111,8 +111,7 @@ def test_both_flanks_of_a_corner_end_in_one_curve_that_is_near_both(name: str) -
         assert away[:, 1].max() < found.off + 1e-9
 
 
-@pytest.mark.thin(3)
-@pytest.mark.costly("splines of drums of several turns")
+@pytest.mark.slow
 @pytest.mark.parametrize("name", TRACKS)
 def test_the_parts_of_a_stretch_follow_one_another_down_to_the_last_digits(name: str) -> None:
     for stretch in splines(name, 0.05).stretches:

@@ -189,8 +189,7 @@ def test_a_spiral_with_a_quick_return_is_metal_where_no_pin_has_been() -> None:
     assert faults(mesh, design, Pins(SPIRAL_ROWS, 4.0)) == []
 
 
-@pytest.mark.thin(7)
-@pytest.mark.costly(BRUTE)
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("plant", "told"),
     [

@@ -165,6 +165,7 @@ OTHERS = [  # cones, a roller beside a radius, and arms: text, height of z in th
 ]
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("text", "level", "rows"), OTHERS, ids=["apex", "cone", "beside", "arm", "leading", "cone-arm"]
 )
@@ -375,7 +376,7 @@ def test_places_in_no_table() -> None:
         close(contact.z[0] - LEVEL, float(wanted))
 
 
-@pytest.mark.costly("a flank's cut is found along its envelope")
+@pytest.mark.slow
 def test_undercut_at_the_inner_end_alone() -> None:
     """The rule of the development, a radius of curvature above the roller's, would say 28.8626."""
     design = shared_design(UNDERCUT)

@@ -89,6 +89,7 @@ def reference(ratio: Any) -> tuple[Any, Any]:
     return lambda t: mp.diff(energy, t) / mp.diff(lift, t), mp.findroot(travel, 0.3)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(("written", "rows"), [(CONSTANT, None), (TABLE, ROWS)])
 def test_the_force_at_the_tappet_is_that_of_the_energy(written: str, rows: Any) -> None:
     ratio = (lambda _: mp.mpf("1.6")) if rows is None else natural_spline(rows)

@@ -318,6 +318,7 @@ def test_an_outer_contour_on_another_layer_than_the_next_is_told(tmp_path: Path)
     assert any(told in remark.sentence for remark in report.remarks)
 
 
+@pytest.mark.slow
 def test_a_layer_of_duplicates_alone_is_passed_over(tmp_path: Path) -> None:
     made = document("R2010")
     for layer in ("PART", "COPY"):

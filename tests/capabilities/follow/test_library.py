@@ -66,7 +66,7 @@ def asked(name: str) -> dict[str, Any]:
     return FOLLOWERS[name] | {"rotation": camgeo.load(RECIPES / f"{name}.yaml").rotation}
 
 
-@pytest.mark.thin(2)
+@pytest.mark.slow
 @pytest.mark.parametrize("name", FOLLOWERS)
 def test_the_motion_is_that_of_the_law(drawings: dict[str, Path], name: str) -> None:
     """Within what a contour that is 1e-5 mm off gives a follower, at pressure angles below 40 degrees."""
@@ -312,8 +312,7 @@ def test_what_is_no_file_says_what_it_is(tmp_path: Path) -> None:
             camgeo.follow(tmp_path / f"{name}.dxf", roller=8.0)
 
 
-@pytest.mark.costly("all laws are tried on each stroke")
-@pytest.mark.thin(2)
+@pytest.mark.slow
 @pytest.mark.parametrize("name", few([*FOLLOWERS], 2))
 def test_its_recipe_makes_the_file_again(drawings: dict[str, Path], tmp_path: Path, name: str, capsys) -> None:
     """Within the reading, by the judge; and a page shows how far off the file is all round."""
@@ -351,7 +350,7 @@ OPENINGS: dict[str, tuple[list[list[tuple[float, float, float]]], int, float | N
 }
 
 
-@pytest.mark.thin(3)
+@pytest.mark.slow
 @pytest.mark.parametrize("name", OPENINGS)
 def test_openings_are_passed_over_and_said(eccentric: Path, tmp_path: Path, name: str) -> None:
     openings, count, bore = OPENINGS[name]

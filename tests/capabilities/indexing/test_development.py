@@ -33,6 +33,7 @@ LAW = Indexed([("rise", 60.0, 150.0, "polynomial-345"), ("dwell", 0.0, 210.0, ""
 AWAY = barrel_away(57.0, 60.0, 1, 35.0)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(("name", "roller"), [("lower", 9.0), ("upper", 9.03)])
 @pytest.mark.parametrize("radius", [50.0, 40.0])
 def test_a_line_lies_on_what_rollers_leave(name: str, roller: float, radius: float) -> None:

@@ -123,6 +123,7 @@ def test_volumes() -> None:
     assert volume(barrel) == pytest.approx(math.pi * 2500 * 80 - bore * 80 - taken, rel=1e-4)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("text", [BARREL, GLOBOID], ids=["barrel", "globoid"])
 def test_the_rib_is_thinnest_where_rollers_come_nearest_to_one_another(text: str) -> None:
     """At the place that the figure names, the rib between two rollers is what both leave of it."""
@@ -173,7 +174,7 @@ def test_curvature_is_that_of_the_gap_across_the_line() -> None:
             assert float(flank.curvature(np.array([theta]), np.array([rho]))[0]) == pytest.approx(wanted, rel=5e-3)
 
 
-@pytest.mark.costly("a search of the turn for each load")
+@pytest.mark.slow
 def test_loads_follow_from_virtual_work() -> None:
     """T = (load + J psi'' Omega^2) psi', the torque on the turret its first factor; velocities those of a cycloid."""
     found = known(shared_design(DRIVEN))
@@ -193,7 +194,7 @@ def test_loads_follow_from_virtual_work() -> None:
     assert heavy["contact-pressure"][0] == pytest.approx(2.0 * light["contact-pressure"][0], rel=1e-6)
 
 
-@pytest.mark.costly("the design of a cam with play")
+@pytest.mark.slow
 def test_play_is_the_clearance_by_its_lever() -> None:
     """In the dwell two rollers stand 30 degrees beside the middle: cos alpha 60 is their lever."""
     design = design_of(changed(BARREL, ("roller: 9", "roller: 9, clearance: 0.06")))
@@ -241,7 +242,7 @@ def test_checks_and_remarks() -> None:
     assert section["offset"] == pytest.approx(30.0 * (1.0 + math.cos(math.pi / 6)))
 
 
-@pytest.mark.costly("cams with two lengths of rollers")
+@pytest.mark.slow
 def test_rollers_that_reach_out_of_the_blank_bear_within_it() -> None:
     """However far they go on, they bear as those that end at the blank."""
     one, other = (design_of(changed(BARREL, ("roller: 9", f"roller: 9, to: {to}"))) for to in (50, 500))
@@ -250,6 +251,7 @@ def test_rollers_that_reach_out_of_the_blank_bear_within_it() -> None:
     assert limits == pytest.approx([0.15 * 12.5] * 2)
 
 
+@pytest.mark.slow
 def test_a_cam_too_short_for_its_turret_is_told() -> None:
     """Where no roller bears on a flank the check of the line of contact fails, and says what serves."""
     text = changed(BARREL, ("length: 80", "length: 36"))

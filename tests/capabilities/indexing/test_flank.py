@@ -124,7 +124,7 @@ def random_flank(rng: random.Random, form: str) -> tuple[Flank, Any, Indexed]:
     return Flank(own, law_of(360.0 / stops, over, law), math.radians(start), radius, sense), away, motion
 
 
-@pytest.mark.thin(3)
+@pytest.mark.slow
 @pytest.mark.parametrize("form", ["barrel", "globoid"])
 @pytest.mark.parametrize("seed", range(3))
 def test_no_roller_comes_nearer_to_a_flank_than_the_one_that_touches_it(form: str, seed: int) -> None:

@@ -51,7 +51,7 @@ def judged(parts, radius, name, turret=BARREL, limits=LIMITS):
     return flank, {check.name: check for check in checks}
 
 
-@pytest.mark.thin(2)
+@pytest.mark.slow
 @pytest.mark.parametrize("turret", [BARREL, LEADING, changed(BARREL, clearance=0.04)])
 @pytest.mark.parametrize("name", ["lower", "upper"])
 def test_a_line_is_right_at_its_radius_alone(turret, name):
@@ -97,6 +97,7 @@ def test_a_line_across_a_track_whose_ends_are_right(name):
     assert flank.measured_error > 10.0
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("name", ["lower", "upper"])
 def test_a_line_that_is_missing(name):
     parts = line(BARREL, 48.0, name)

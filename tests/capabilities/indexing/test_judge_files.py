@@ -52,8 +52,7 @@ def refused(verdict):
     return {check.name for check in verdict.checks if not check.ok}
 
 
-@pytest.mark.thin(3)
-@pytest.mark.costly("a boolean and a verdict for each turret")
+@pytest.mark.slow
 @pytest.mark.parametrize("turret", [BARREL, LEADING, MIRRORED, GLOBOID, PRELOAD, EIGHT, PLAY])
 def test_a_sound_cam_is_accepted(turret):
     verdict = of_the_sound(turret)
@@ -142,8 +141,7 @@ FAULTS = {
 }
 
 
-@pytest.mark.thin(6)
-@pytest.mark.costly("a verdict for each fault")
+@pytest.mark.slow
 @pytest.mark.parametrize("fault", FAULTS)
 def test_a_fault_of_the_whole(fault):
     how, names = FAULTS[fault]
@@ -193,7 +191,7 @@ def test_a_solid_in_inches_is_refused_with_its_unit(tmp_path):
     assert verify(path, BARREL.intent, Limits(TOLERANCE), units=25.4).ok
 
 
-@pytest.mark.costly("a boolean and a verdict")
+@pytest.mark.slow
 def test_walls_that_go_straight_to_the_axis():
     points, corners = made(BARREL, radial=True, **STEPS)
     verdict = judged(points, corners, BARREL.intent)
@@ -272,6 +270,7 @@ def test_a_roller_longer_than_the_track_is_deep():
     assert judged(*mesh(BARREL), changed(BARREL, outer=500.0).intent).ok
 
 
+@pytest.mark.slow
 @FORMS
 def test_the_volume_is_that_of_many_points(turret):
     """The share of points of the blank that no roller sweeps, by the sweep at many angles."""
@@ -283,8 +282,7 @@ def test_the_volume_is_that_of_many_points(turret):
     assert abs(value - measured) / measured < 1e-4
 
 
-@pytest.mark.thin(2)
-@pytest.mark.costly("a verdict for each pair of limits")
+@pytest.mark.slow
 @pytest.mark.parametrize(("motion", "play", "names"), [(0.004, 0.004, {"motion", "form-closure"}), (0.04, 0.08, set())])
 def test_limits_that_are_given_count(motion, play, names):
     found = judged(*mesh(BARREL), BARREL.intent, motion=math.radians(motion), play=math.radians(play))

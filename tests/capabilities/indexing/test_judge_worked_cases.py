@@ -21,6 +21,7 @@ def places(*rows):
     return np.array([(r * math.cos(math.radians(a)), r * math.sin(math.radians(a)), z) for r, a, z in rows])
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("turret", "theta", "side", "place"),
     [

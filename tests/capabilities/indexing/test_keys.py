@@ -346,7 +346,7 @@ def test_a_length_that_does_not_serve_alone_is_not_offered() -> None:
     design_of(changed(shorter, ("over: 90", "over: 180"), ("270", "180")))
 
 
-@pytest.mark.costly("a search for a size, and a cam of it")
+@pytest.mark.slow
 def test_a_size_that_is_named_serves_as_it_is_written() -> None:
     """By samples alone 14.13 mm would serve; with it, the rib is cut away."""
     text = """cam:
@@ -364,6 +364,7 @@ part: {length: 62.72843093142297, bore: 12}
     design_of(changed(text, ("15.77757596501763", found[1])))
 
 
+@pytest.mark.slow
 def test_no_roller_is_named_that_is_too_small() -> None:
     """A step of one degree leaves a rib between rollers alone that are too small: a longer one serves."""
     text = changed(
@@ -382,6 +383,7 @@ def test_where_no_smaller_roller_is_looked_into_without_an_error() -> None:
         design_of(text)
 
 
+@pytest.mark.slow
 def test_rollers_that_leave_no_rib() -> None:
     """Rollers that nearly touch one another cut the rib between them away; the smaller ones named leave one."""
     text = changed(

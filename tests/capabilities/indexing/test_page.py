@@ -56,7 +56,7 @@ TURRETS = [
 ]
 
 
-@pytest.mark.thin(2)
+@pytest.mark.slow
 @pytest.mark.parametrize(("text", "over", "stops", "side", "sense"), TURRETS)
 def test_rollers_of_a_barrel_are_where_the_dial_takes_them(
     text: str, over: float, stops: int, side: float, sense: float
@@ -121,7 +121,7 @@ def seen_point(design: IndexDesign, w: float, psi: float, z: float, theta: float
     return r * math.sin(psi), np.array([[r * math.cos(phi), r * math.sin(phi), z]])
 
 
-@pytest.mark.costly("distances from all rollers of many places")
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("text", "over", "layer_at", "size"),
     [

@@ -120,8 +120,7 @@ CASES = {
 }
 
 
-@pytest.mark.costly("brute force over the positions of a cutter and of rollers")
-@pytest.mark.thin(3)
+@pytest.mark.slow
 @pytest.mark.parametrize("case", CASES)
 def test_the_cutter_takes_what_rollers_take(case: str) -> None:
     """Random places of the blank are as far from the cutter at all its positions as from the rollers of a flank."""
@@ -338,6 +337,7 @@ def test_a_globoid_has_no_program(tmp_path: Path, capsys: pytest.CaptureFixture[
     assert "no program is made of a globoid" in capsys.readouterr().err
 
 
+@pytest.mark.slow
 def test_a_program_of_another_origin_needs_a_cutter(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     path, program = tmp_path / "index.yaml", tmp_path / "other.ngc"
     program.write_text(written(EIGHT)[1], "ascii")
@@ -361,7 +361,7 @@ def test_inches_and_a_feed_by_the_minute(tmp_path: Path) -> None:
     assert sum(" F11.8110" in line for line in lines) == 2
 
 
-@pytest.mark.costly("random barrels with their programs")
+@pytest.mark.slow
 @pytest.mark.parametrize("seed", few(range(12, 22), 10))
 def test_random_barrels_are_milled(tmp_path: Path, seed: int) -> None:
     """A random barrel on which a roller always bears has a program that leaves it; the judge sees where none does."""

@@ -53,6 +53,7 @@ def test_a_run_writes_table_page_and_report(text: str, tmp_path: Path) -> None:
     assert "contact-length" in page
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("head", ["", "rotation: ccw\n"])
 @pytest.mark.parametrize("text", [BARREL, GLOBOID], ids=["barrel", "globoid"])
 def test_rollers_are_drawn_where_the_turret_leads_them(text: str, head: str) -> None:
@@ -144,6 +145,7 @@ def test_a_load_that_is_named_holds_the_limit(limit: str) -> None:
     assert failure(limited(limit, ("load: 20", f"load: {0.204 * share}")))
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("name", ["indexing-barrel", "indexing-globoid"])
 def test_starters_are_sound(name: str, tmp_path: Path) -> None:
     text = changed(starter(name), ("[stl, csv]", "[csv]"))

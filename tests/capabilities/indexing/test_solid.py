@@ -150,7 +150,7 @@ def checked(mesh: Mesh, tolerance: float, bound: float) -> None:
     assert 0.3 * tolerance < bound <= tolerance
 
 
-@pytest.mark.thin(2)
+@pytest.mark.slow
 @pytest.mark.parametrize("text", [BARREL, GLOBOID], ids=["barrel", "globoid"])
 @pytest.mark.parametrize("tolerance", [0.1, 0.02])
 def test_every_triangle_is_within_the_tolerance(text: str, tolerance: float) -> None:

@@ -166,6 +166,7 @@ def test_a_lift_that_is_not_passed_is_said(tmp_path, capsys):
 
 
 # needs: camshaft
+@pytest.mark.slow
 def test_events_of_a_shaft_are_over_its_own_angle(tmp_path):
     from support.shafts import Planted, camshaft, shaft_points, written
 

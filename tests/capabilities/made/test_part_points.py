@@ -68,7 +68,7 @@ def test_the_sense_of_lifts_is_told_with_their_turn(tmp_path, capsys):
     assert "run in the other sense, turned by -160 degrees: let angles grow as the shaft" in capsys.readouterr().err
 
 
-@pytest.mark.thin(2)
+@pytest.mark.slow
 @pytest.mark.parametrize("heading", ["crank_deg,lift_mm", "Crank angle [deg],lift_mm", "angle (deg) CA,lift_mm"])
 def test_crank_degrees_of_a_heading_are_halved(heading, tmp_path):
     recipe, file = lifts(tmp_path, ROLLER, heading=heading, angles=(2.0,))

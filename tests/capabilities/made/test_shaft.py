@@ -215,6 +215,7 @@ def test_lobes_by_a_column(label, tmp_path):
     assert all(lobe["discs"][0]["profile"] < 1e-7 for lobe in made["lobes"])
 
 
+@pytest.mark.slow
 def test_a_file_for_each_lobe_and_lobes_that_are_missing_are_said(tmp_path, capsys):
     recipe = camshaft(tmp_path)
     rows = shaft_points(recipe, noise=0.001, count=120)

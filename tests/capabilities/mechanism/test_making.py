@@ -461,6 +461,7 @@ def test_a_pivot_that_stands_through_the_cam_is_caught() -> None:
     assert check.value < -3.9
 
 
+@pytest.mark.slow
 def test_too_small_an_axial_gap_is_caught() -> None:
     assembly = only(made("yoke")[2], "yoke", "cap-right")
     assert all(check.ok for check in collision_checks(assembly))

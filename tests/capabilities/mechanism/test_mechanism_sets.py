@@ -43,6 +43,7 @@ def yoke(tmp_path_factory: pytest.TempPathFactory) -> pipeline.Outcome:
     return pipeline.export(load_text(YOKE, "yoke.yaml"), tmp_path_factory.mktemp("out"))
 
 
+@pytest.mark.slow
 def test_a_set_is_complete_and_every_body_is_judged(yoke: pipeline.Outcome) -> None:
     assert yoke.ok, [check for check in yoke.report["checks"] if not check["ok"]]
     bodies = ["cam", "shaft", "retainer-shaft", "yoke", "base", "cap-right", "cap-left"]

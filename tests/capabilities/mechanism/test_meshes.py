@@ -89,7 +89,7 @@ def failing(mesh, one, tolerance=E):
     return {check.name for check in checks if not check.ok}
 
 
-@pytest.mark.thin(2)
+@pytest.mark.slow
 @pytest.mark.parametrize("precision", [SINGLE, DECIMALS], ids=["stl", "3mf"])
 @pytest.mark.parametrize("name", BODIES)
 def test_plates_become_one_closed_body_of_their_volume(name, precision):

@@ -255,6 +255,7 @@ def test_dimensions_measure_what_they_say(tmp_path: Path) -> None:
         assert kinds.count("TEXT") == 1
 
 
+@pytest.mark.slow
 def test_the_contour_is_judged_and_a_planted_error_is_seen(tmp_path: Path) -> None:
     folder = exported(CAM, tmp_path)
     recipe = load_text(CAM, tmp_path / "cam.yaml")
@@ -355,6 +356,7 @@ def test_the_same_recipe_gives_the_same_bytes(tmp_path: Path) -> None:
         assert (first / name).read_bytes() == (second / name).read_bytes()
 
 
+@pytest.mark.slow
 def test_checksums_are_those_of_the_other_files(drawn: list[drawing.Pages], tmp_path: Path) -> None:
     folder = exported(CAM.replace("files: [", "files: [dxf, csv, "), tmp_path)
     report = json.loads((folder / "report.json").read_text(encoding="utf-8"))

@@ -84,7 +84,7 @@ def demand_sound(made: Made) -> None:
     assert len(about) == len(set(about)), about
 
 
-@pytest.mark.costly("a property over parts by chance: one of them")
+@pytest.mark.slow
 @pytest.mark.parametrize("seed", few(range(8), 8))
 def test_of_a_part_by_chance(seed: int) -> None:
     demand_sound(made(seed))

@@ -44,7 +44,7 @@ def sampled(f, x):
     return Samples(f[0], *cell_bounds(*f), np.stack([x[0], np.broadcast_to(angles(f[0].shape[1]), x[0].shape)]))
 
 
-@pytest.mark.thin(2)
+@pytest.mark.slow
 @pytest.mark.parametrize("n", [24, 60, 360])
 @pytest.mark.parametrize("band", [1e-9, 0.003, 0.2, 2.0, 50.0])
 def test_the_windows_are_those_of_two_pointers(n, band):

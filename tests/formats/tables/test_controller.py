@@ -76,7 +76,7 @@ def joined(head: list[str], columns: dict[str, Any]) -> Any:
 RATES = (("velocity", "SlaveVelo"), ("acceleration", "SlaveAcc"))
 
 
-@pytest.mark.thin(8)
+@pytest.mark.slow
 @pytest.mark.parametrize("cam", CAMS)
 @pytest.mark.parametrize("controller", [name for name in CONTROLLERS if name != "sew"])
 def test_a_drive_is_within_what_its_table_says(cam: str, controller: str, tmp_path: Path) -> None:

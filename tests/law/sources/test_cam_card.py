@@ -195,7 +195,7 @@ def crossed(members, shares, half, at):
     return half * low, sum(share * 2.0 * c[0] for share, c, _ in terms)
 
 
-@pytest.mark.thin(3)
+@pytest.mark.slow
 @pytest.mark.parametrize(("other", "members", "shares", "half", "seconds"), BORDER)
 def test_true_lobes_of_few_members_are_met_though_they_lie_on_the_border(other, members, shares, half, seconds):
     """The closing side mixes its members by `other` and over the angle that gives it the opening's S'' at the nose."""

@@ -167,7 +167,7 @@ def test_the_conditions_of_a_least_hold(seed, count, places, stroke, rest):
         conditions(found, space, limits)
 
 
-@pytest.mark.thin(2)
+@pytest.mark.slow
 @pytest.mark.parametrize("rest", [None, (0.3, -0.2), FREE, (None, -0.2)])
 @pytest.mark.parametrize("count", [69, 70, 71, 72, 73, 95, 96, 97, 120, 241, 700])
 def test_equations_in_blocks_have_the_solution_of_all_at_once(count, rest, monkeypatch):

@@ -426,6 +426,7 @@ def test_a_row_that_stands_out_is_followed_or_left_out():
     assert dropped.kept.remarks[0].sentence.startswith("line 51: left out, the row stands out")
 
 
+@pytest.mark.slow
 def test_several_rows_that_stand_out_are_all_told():
     rows = broken(outlier)
     rows.s[[250, 200]] = rows.s[[200, 250]]
@@ -702,7 +703,7 @@ def test_a_row_that_is_off_is_named_near_open_ends_too(place):
     assert np.abs(made.derivatives(x, 0)[0] - sound.derivatives(x, 0)[0]).max() <= 2e-4
 
 
-@pytest.mark.thin(3)
+@pytest.mark.slow
 @pytest.mark.parametrize("step", [1.0, 2.5, 5.0])
 @pytest.mark.parametrize("places", [3, 5])
 def test_no_row_of_a_sound_table_with_open_ends_stands_out(step, places):

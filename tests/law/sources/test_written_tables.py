@@ -43,6 +43,7 @@ def counted(count: int, seed: int) -> tuple[list[str], list[str], list[str]]:
     return refused, remarked, passed
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(("count", "seed", "most"), [(QUICK, 7, 0), pytest.param(SLOW, 8, 1, marks=pytest.mark.slow)])
 def test_sound_tables_are_followed_and_a_wrong_row_is_named(count, seed, most):
     refused, remarked, passed = counted(count, seed)

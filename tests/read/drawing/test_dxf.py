@@ -213,7 +213,7 @@ def test_rational_and_plain_splines(tmp_path: Path) -> None:
     assert drawing.pieces == 4
 
 
-@pytest.mark.thin(2)
+@pytest.mark.slow
 @pytest.mark.parametrize("degree", [2, 3, 5, 9, 11])
 def test_a_closed_spline_of_one_period(tmp_path: Path, degree: int) -> None:
     """Uniform knots, the first control points repeated at the end: as CAD systems write periodic splines."""

@@ -255,7 +255,7 @@ def test_fault_of_a_plain_part(plain, fault):
     assert caught <= failures(rewritten(path, change), recipe, design)
 
 
-@pytest.mark.thin(6)
+@pytest.mark.slow
 @pytest.mark.parametrize("fault", ["a triangle flipped", "a triangle removed", "inches", "stretched upward", "scaled"])
 def test_fault_of_a_part_with_everything(full, fault):
     recipe, design, path, _ = full

@@ -208,6 +208,7 @@ def test_assemblies_written_by_the_kernel(tmp_path):
         read_step(path)
 
 
+@pytest.mark.slow
 @kernel
 def test_a_file_that_is_moved_or_turned_does_not_pass(tmp_path):
     recipe = step_recipe("{thickness: 8, bore: 10}")

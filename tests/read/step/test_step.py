@@ -214,6 +214,7 @@ def test_faces_that_look_inward(tmp_path):
     assert any("at z = 0 mm looks into the solid" in fault for fault in solid.faults)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("part", [washer(), washer(seam=False), stadium(), swept(EGG, None, 5)])
 def test_each_face_that_is_turned_over_is_a_fault(tmp_path, part):
     """Also one that goes all round, whose section is a whole circle either way."""

@@ -212,6 +212,7 @@ def test_the_axes_are_named_with_their_units(browser: Browser, tmp_path: Path) -
 
 
 # needs: dynamics
+@pytest.mark.slow
 def test_a_force_begins_at_0_and_nothing_is_0_without_digits(browser: Browser, tmp_path: Path) -> None:
     """The lowest line of a pressure that is never 0 is at 0, that of an error that is 0 at its tolerance."""
     path = tmp_path / "even.yaml"

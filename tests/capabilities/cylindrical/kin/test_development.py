@@ -123,6 +123,7 @@ def test_what_an_undercut_loses_at_one_radius_is_told_and_not_judged():
     assert -0.43 < flank.motion.least < -0.386  # at 50 degrees 0.386911 is lost, and a little more beside it
 
 
+@pytest.mark.slow
 def test_a_file(tmp_path):
     lines = [Developed("R50_LOWER", 50.0, "lower"), Developed("R44_PITCH", 44.0, "pitch")]
     layers = {own.layer: line(own.radius, own.flank) for own in lines}

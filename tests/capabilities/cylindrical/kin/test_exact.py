@@ -75,8 +75,7 @@ LED = {
 DRUMS |= LED
 
 
-@pytest.mark.costly("positions at all angles of places on all patches")
-@pytest.mark.thin(8)
+@pytest.mark.slow
 @pytest.mark.parametrize("bend", [0.0, 4e-3], ids=["sound", "bent"])
 @pytest.mark.parametrize("kind", DRUMS)
 def test_what_stands_out_is_missing_and_holds(kind, bend):

@@ -76,6 +76,7 @@ def test_what_cannot_be_read(tmp_path, stl):
         verify(tmp_path / "drum.dxf", DRUM.intent(), LIMITS)
 
 
+@pytest.mark.slow
 def test_other_forms_and_units(tmp_path, made):
     triangles = made.places[made.corners]
     for path in (text(tmp_path / "text.stl", triangles), in_3mf(tmp_path / "drum.3mf", triangles)):

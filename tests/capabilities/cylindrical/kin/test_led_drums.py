@@ -250,7 +250,7 @@ def sound(name):
     return mesh, judge_mesh(mesh, DRUMS[name].intent(), Limits(0.15))
 
 
-@pytest.mark.costly("whole verdicts of drums")
+@pytest.mark.slow
 @pytest.mark.parametrize("name", DRUMS)
 def test_a_sound_drum_is_accepted(name):
     drum, (_, verdict) = DRUMS[name], sound(name)
@@ -261,8 +261,7 @@ def test_a_sound_drum_is_accepted(name):
     assert verdict.play.unit == unit
 
 
-@pytest.mark.thin(2)
-@pytest.mark.costly("whole verdicts of drums")
+@pytest.mark.slow
 @pytest.mark.parametrize("name", DRUMS)
 def test_a_limit_is_kept(name):
     """Limits of an arm are rad, and what is told of it degrees."""
@@ -282,6 +281,7 @@ def test_an_arm_that_stands_beside_the_drum_is_refused():
         replace(ARM, arm=replace(ARM.arm, length=10.0)).intent().follower.guide()
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("drum", [BESIDE, ARM, RIB], ids=["cone beside the axis", "arm", "rib on an arm"])
 def test_the_volume_is_that_of_ever_finer_meshes(drum):
     exact, _ = volume_within(drum.intent(), gauges_of(drum.intent()))

@@ -165,6 +165,7 @@ def test_what_the_roller_never_meets(intent):
     assert "metal stands in the roller's way" in blocked.detail
 
 
+@pytest.mark.slow
 def test_a_triangle_turned_over_or_left_out(made, intent):
     corners = made.corners.copy()
     corners[1000] = corners[1000, ::-1]

@@ -63,6 +63,7 @@ def refused(verdict):
     return {check.name for check in verdict.checks if not check.ok}
 
 
+@pytest.mark.slow
 def test_a_cutter_of_the_roller_s_size_along_its_path(tmp_path):
     verdict = judged(tmp_path, text_of(*way()))
     assert verdict.ok, verdict.checks
@@ -117,7 +118,7 @@ def led(folder, drum, ways=None, cutting=None, **more):
     return judged(folder, text, drum, cutting or cut_by(drum))
 
 
-@pytest.mark.thin(4)
+@pytest.mark.slow
 @pytest.mark.parametrize("kind", LED)
 def test_a_cutter_like_the_roller_along_its_path_is_right_at_every_radius(tmp_path, kind):
     """What stands between blocks is what a chord leaves out, no more than the path's bend times h^2/8."""
@@ -164,8 +165,7 @@ PLANTED = [
 ]
 
 
-@pytest.mark.thin(5)
-@pytest.mark.costly("each kind of roller with each fault is a program to be judged")
+@pytest.mark.slow
 @pytest.mark.parametrize(("kind", "fault"), few(PLANTED[::3], 7))
 def test_planted_faults_of_led_rollers_are_refused(tmp_path, kind, fault):
     drum = LED[kind]
@@ -484,8 +484,7 @@ def test_what_is_left_is_what_no_position_takes(case):
     assert np.median(left.above[cells] - left.below[cells]) < 0.02
 
 
-@pytest.mark.costly("brute force over the positions of a cutter")
-@pytest.mark.thin(1)
+@pytest.mark.slow
 @pytest.mark.parametrize("side", [-1, 1], ids=["lower", "upper"])
 @pytest.mark.parametrize("kind", ["beside", "trailing", "leading", "cone", "cone on an arm"])
 def test_what_is_left_beside_a_led_roller_is_what_no_position_takes(kind, side):
@@ -537,7 +536,7 @@ def on_flank(gauge, motion, theta, rho):
     return np.stack([x, y, gauge.level + motion(theta) + up], axis=-1)
 
 
-@pytest.mark.thin(2)
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("beside", "outside", "inside"),
     [(False, 0.00212883859238, 0.168907879811), (True, 4.81844361801e-6, 0.0175138654945)],

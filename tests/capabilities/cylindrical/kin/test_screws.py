@@ -105,7 +105,7 @@ def test_a_sound_screw_is_accepted_with_what_was_measured(name, request):
     assert 0.001 < worst < 0.0025
 
 
-@pytest.mark.thin(2)
+@pytest.mark.slow
 @pytest.mark.parametrize("columns", [60, 90])
 def test_a_tall_screw_in_wide_triangles_is_accepted(columns):
     """Its ends lie far below turns at the other one, farther than a step of Newton's method is good for."""

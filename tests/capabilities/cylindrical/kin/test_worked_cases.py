@@ -170,7 +170,7 @@ def test_curvature_of_flank_against_roller(follower):
     close(found, [0.0824274423323, 0.143259107194, 0.0795001577066, 0.0971588273894])
 
 
-@pytest.mark.costly("a figure that is sought on the whole turn, and across the roller at each angle")
+@pytest.mark.slow
 def test_the_play_of_a_groove_is_least_in_its_dwells():
     found = plays(replace(DRUM, track=Groove(12.0, 0.05)).intent())
     assert found.least.value == pytest.approx(0.05, abs=1e-9)

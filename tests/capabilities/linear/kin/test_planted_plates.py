@@ -191,7 +191,7 @@ def test_a_groove_and_its_faults():
     assert {"contour", "motion"} <= faults(BLANK, chain.moved(0.01, 0.0), plate=GROOVED)
 
 
-@pytest.mark.costly("a plate, and a verdict of each of its faults")
+@pytest.mark.slow
 def test_an_endless_plate_and_its_faults():
     follower = endless()
     plate, contour = intent(follower), polygon(follower, 600)
