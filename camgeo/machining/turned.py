@@ -176,10 +176,9 @@ def demand_judged(recipe: ShaftOrder, request: FileRequest, finest: float, what:
     """Raise RecipeErrors for a program, named, whose tolerance is finer than what it leaves is judged to, mm."""
     tolerance = request.tolerance or recipe.export.tolerance
     if tolerance < finest:
-        where = recipe.field_of(request) if request.tolerance is not None else "export.tolerance"
         remedy = f"give at least {upward(finest / recipe.mm, 2)} {recipe.units}"
         problem, shown = f"what {what} leaves is not judged so finely", f"{tolerance / recipe.mm:.9g} {recipe.units}"
-        raise recipe.error(where, problem, shown, remedy)
+        raise recipe.error(recipe.tolerance_field(request), problem, shown, remedy)
 
 
 def down(blank: float, cut: float, ways: list[tuple[str, W]]) -> list[tuple[str, W, float]]:

@@ -14,7 +14,7 @@ from camgeo.common.rounding import NOISE, downward, upward
 from camgeo.curve.support import is_sharp
 from camgeo.measures.extension import MEASURES
 from camgeo.measures.figures import design_figures
-from camgeo.measures.rule_remark import RuleRemark
+from camgeo.measures.rule_remark import RuleRemark, source_remarks
 from camgeo.measures.units import UNIT_NAMES, displacement_unit
 from camgeo.part.features import with_records
 from camgeo.recipe.figures import ON_RETURN, ON_RISE, PITCH_RADIUS, PIVOT_CLEARANCE, RADIUS
@@ -98,7 +98,7 @@ def remarks_of(
         "large-cutter": [_cutter(recipe, design)],
         "pivot-clearance": [_pivot(recipe, design)],
         "motion": _motion(recipe, design),
-        "table": _table(design),
+        "table": source_remarks(design.exact.kept),
         "wanted-law": [_law_error(recipe, design)],
         "loose-motion-error": [_implied(recipe, design, checks, files)],
         "no-play": [_stuck(recipe, design, files)],
@@ -398,12 +398,6 @@ def _stroke(design: Design) -> tuple[float, float]:
     """Stroke in mm and 1, or swing in rad and the length of the arm, mm."""
     t = np.linspace(0.0, 2.0 * math.pi, LOOKS, endpoint=False)
     return design.motion.stroke(np.sort(np.concatenate([t, design.exact.breaks])))
-
-
-def _table(design: Design) -> list[RuleRemark]:
-    """Remarks that the rows of a table gave when they were read, in the table's units, or a contour."""
-    kept = design.exact.kept
-    return [] if kept is None else [RuleRemark(name, None, None, "", sentence) for name, sentence in kept.remarks]
 
 
 def _acceleration(recipe: Recipe, joints: tuple[DerivativeJump, ...]) -> RuleRemark | None:

@@ -133,7 +133,7 @@ class Job:
 
     def tolerance_field(self, request: FileRequest) -> str:
         """Path of the field that sets a file's tolerance."""
-        return self.field(request) if request.tolerance is not None else "export.tolerance"
+        return self.recipe.tolerance_field(request)
 
     def outlines(self, form: str, tolerance: float) -> tuple[Outline, ...]:
         """Contour of each surface within a tolerance, mm, mirrored for a counter-clockwise shaft.

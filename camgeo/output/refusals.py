@@ -5,7 +5,7 @@ from __future__ import annotations
 from contextlib import contextmanager
 from typing import TYPE_CHECKING
 
-from camgeo.common.rounding import upward
+from camgeo.common.rounding import downward, upward
 from camgeo.curve.curve import CurveError
 from camgeo.files.errors import RegionError
 from camgeo.fit.nodes import ToleranceError
@@ -35,8 +35,19 @@ def refusals(recipe: Order, request: FileRequest, words: Callable[[str], str] = 
         raise recipe.error("cam", words(str(error))) from error
 
 
+def demand_flanks(recipe: Order, request: FileRequest, depth: float) -> None:
+    """Raise RecipeErrors for a solid within a tolerance above half the depth of its flanks, mm.
+
+    Whoever reads such a file cannot tell flanks from what is about them.
+    """
+    tolerance, mm, units = recipe.tolerance(request), recipe.mm, recipe.units
+    if request.format.solid and tolerance > 0.5 * depth:
+        problem = f"the flanks are {depth / mm:.4g} {units} deep, too little for a solid so far off"
+        remedy = f"give at most {downward(0.5 * depth / mm, 4)} {units}"
+        raise recipe.error(recipe.tolerance_field(request), problem, f"{tolerance / mm:.9g} {units}", remedy)
+
+
 def refusal(recipe: Order, request: FileRequest, error: ToleranceError) -> RecipeErrors:
     """Errors for a tolerance that cannot be held, at the field that sets it."""
-    where = recipe.field_of(request) if request.tolerance is not None else "export.tolerance"
     inches = f"{upward(error.reached, 3)} mm are {upward(error.reached / recipe.mm, 3)} in"
-    return recipe.error(where, str(error), None, inches if recipe.units == "inch" else "")
+    return recipe.error(recipe.tolerance_field(request), str(error), None, inches if recipe.units == "inch" else "")

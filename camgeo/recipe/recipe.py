@@ -138,6 +138,10 @@ class Order(Document):
         """Tolerance of a requested file, mm: its own, or else that of the export."""
         return request.tolerance or self.export.tolerance
 
+    def tolerance_field(self, request: FileRequest) -> str:
+        """Path of what sets the tolerance of a requested file."""
+        return "export.tolerance" if request.tolerance is None else self.field_of(request)
+
     def using(self, *options: str) -> Self:
         """The recipe itself; raises CallError for any option, as options need a recipe of one cam."""
         if options:

@@ -13,7 +13,7 @@ from camgeo.common.errors import CallError
 from camgeo.common.units import UNIT_MM
 from camgeo.formats.tables.controller import rates_of, write_rows
 from camgeo.measures.file_result import FileResult
-from camgeo.measures.rule_remark import RuleRemark
+from camgeo.measures.rule_remark import RuleRemark, source_remarks
 from camgeo.measures.units import in_units, report_unit
 from camgeo.output.pipeline import REPORT, Outcome
 from camgeo.recipe.export import FileRequest
@@ -199,8 +199,7 @@ def _made(design: AxisDesign, request: FileRequest, path: Path, clock: Clock) ->
 
 
 def _run(design: AxisDesign, files: list[FileResult], checks: list[Check], clock: Clock) -> Run:
-    recipe, kept = design.recipe, design.motion.kept
-    remarks = [] if kept is None else [RuleRemark(name, None, None, "", told) for name, told in kept.remarks]
+    recipe, remarks = design.recipe, source_remarks(design.motion.kept)
     if recipe.index and recipe.modulo is not None and design.advance and design.cycles is None:
         sentence = "no number of cycles brings the axis back to its place: what is left adds up"
         remarks.append(RuleRemark("modulo", None, None, "", sentence))
@@ -212,7 +211,7 @@ def _run(design: AxisDesign, files: list[FileResult], checks: list[Check], clock
         "an axis that turns" if recipe.swings else "an axis along a line",
         remarks=tuple(remarks),
         joints=design.joints,
-        table=kept,
+        table=design.motion.kept,
         displacements=report_unit(recipe, design.unit),
     )
     return Run(design, findings)

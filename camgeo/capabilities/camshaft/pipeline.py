@@ -240,8 +240,7 @@ def _solid(job: _Job, request: FileRequest, path: Path) -> tuple[FileResult, tup
     try:
         bound, pieces = _written(job, request, path)
     except ToleranceError as error:
-        where = recipe.field_of(request) if request.tolerance is not None else "export.tolerance"
-        raise recipe.error(where, str(error)) from error
+        raise recipe.error(recipe.tolerance_field(request), str(error)) from error
     except RegionError as error:
         raise recipe.error("camshaft", f"within the tolerance, {error}") from error
     if not request.format.contour:

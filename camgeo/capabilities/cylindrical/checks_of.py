@@ -14,7 +14,7 @@ from camgeo.capabilities.cylindrical.figures import CONTACT_PRESSURE, at_angle, 
 from camgeo.capabilities.cylindrical.flank import distance
 from camgeo.formats.turned import DEVELOPMENT
 from camgeo.measures.placed import figure_check
-from camgeo.measures.rule_remark import RuleRemark
+from camgeo.measures.rule_remark import RuleRemark, pressure_remarks, source_remarks
 from camgeo.measures.units import in_units
 from camgeo.recipe.figures import LEAST_WALL, PRESSURE_ANGLE
 from kin.numeric.check import Check, failed
@@ -102,12 +102,8 @@ def remarks_on(design: DrumDesign, figures: Sequence[Figure]) -> tuple[RuleRemar
         where = "" if recipe.swings else " at the roller's inner end"
         sentence = f"the pressure angle reaches {steep.value:.4g} degrees{where}, {usual:g} is usual"
         remarks.append(RuleRemark(PRESSURE_ANGLE, steep.value, usual, "deg", sentence, steep.at))
-    kept = design.motion.kept
-    remarks += [] if kept is None else [RuleRemark(name, None, None, "", told) for name, told in kept.remarks]
-    pressure, bearable = known.get(CONTACT_PRESSURE, known.get(f"{CONTACT_PRESSURE}-middle")), bears(design)
-    if pressure is not None and bearable is not None and pressure.value > bearable:
-        sentence = f"the contact's pressure reaches {pressure.value:.4g} N/mm^2, the materials bear {bearable:.4g}"
-        remarks.append(RuleRemark(CONTACT_PRESSURE, pressure.value, bearable, pressure.unit, sentence, pressure.at))
+    remarks += source_remarks(design.motion.kept)
+    remarks += pressure_remarks(known.get(CONTACT_PRESSURE, known.get(f"{CONTACT_PRESSURE}-middle")), bears(design))
     twist, track = known.get("shoe-twist"), recipe.track
     if twist is not None and twist.value > track.clearance:
         shown, unit = in_units(recipe, twist.value, "mm")

@@ -17,7 +17,7 @@ from camgeo.machining.turned import cutting_of, demand_judged
 from camgeo.measures.file_result import FileResult
 from camgeo.output.extension import MAKING, numbers_of
 from camgeo.output.own_kind import Made, judged_made
-from camgeo.output.refusals import refusals
+from camgeo.output.refusals import demand_flanks, refusals
 
 if TYPE_CHECKING:
     from pathlib import Path
@@ -39,6 +39,7 @@ def foresee(design: DrumDesign, request: FileRequest) -> None:
             problem = "a flank that an undercut shortens ends in a sharp edge, and no STEP is made of it"
             raise design.recipe.error(design.recipe.field_of(request), problem, None, "give stl, 3mf or ply")
         need_kernel()
+    demand_flanks(design.recipe, request, design.recipe.track.depth)
     if request.format.program:
         _demand_judged(design, request)
 

@@ -23,6 +23,7 @@ from typing import TYPE_CHECKING, NamedTuple
 import numpy as np
 
 from camgeo.common.rounding import downward, upward
+from camgeo.output.refusals import demand_flanks
 from kin.cylindrical.follower import DrumFollower
 from kin.cylindrical.shoe import longest_shoe
 
@@ -116,6 +117,8 @@ def demand_led(design: DrumDesign) -> None:
         f"whose least radius is {shown(bend.radius)} {units}"
     )
     if design.crossings and (roller.shoe is None or not roller.shoe > made):
+        for request in recipe.export.files:
+            demand_flanks(recipe, request, recipe.track.depth)
         problem = f"a wall of the groove is missing over {shown(gap)} {units} where its tracks cross, "
         if roller.shoe is not None and roller.shoe > gap:
             problem += f"{shown(made)} {units} in a solid within its tolerance, "

@@ -9,7 +9,7 @@ import numpy as np
 from camgeo.capabilities.indexing.figures import Search, bears, contact_length
 from camgeo.capabilities.indexing.keys import LENGTH, RIB
 from camgeo.measures.placed import figure_check
-from camgeo.measures.rule_remark import RuleRemark
+from camgeo.measures.rule_remark import RuleRemark, pressure_remarks, source_remarks
 from camgeo.recipe.figures import LEAST_WALL, PRESSURE_ANGLE
 from kin.numeric.check import Check
 from kin.numeric.records import replace
@@ -78,10 +78,6 @@ def remarks_on(design: IndexDesign, figures: Sequence[Figure]) -> tuple[RuleRema
     if steep.value > STEEP and PRESSURE_ANGLE not in limited:
         sentence = f"the pressure angle of the best placed roller reaches {steep.value:.4g} degrees, {STEEP:g} is usual"
         remarks.append(RuleRemark(PRESSURE_ANGLE, steep.value, STEEP, "deg", sentence, steep.at))
-    kept = design.motion.kept
-    remarks += [] if kept is None else [RuleRemark(name, None, None, "", told) for name, told in kept.remarks]
-    pressure, bearable = known.get("contact-pressure"), bears(design)
-    if pressure is not None and bearable is not None and pressure.value > bearable:
-        sentence = f"the contact's pressure reaches {pressure.value:.4g} N/mm^2, the materials bear {bearable:.4g}"
-        remarks.append(RuleRemark("contact-pressure", pressure.value, bearable, pressure.unit, sentence, pressure.at))
+    remarks += source_remarks(design.motion.kept)
+    remarks += pressure_remarks(known.get("contact-pressure"), bears(design))
     return tuple(remarks)

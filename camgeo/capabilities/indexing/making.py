@@ -16,7 +16,7 @@ from camgeo.machining.turned import cutting_of, demand_judged
 from camgeo.measures.file_result import FileResult
 from camgeo.output.extension import MAKING, numbers_of
 from camgeo.output.own_kind import Made, judged_made
-from camgeo.output.refusals import refusals
+from camgeo.output.refusals import demand_flanks, refusals
 
 if TYPE_CHECKING:
     from pathlib import Path
@@ -31,6 +31,7 @@ def foresee(design: IndexDesign, request: FileRequest) -> None:
     """Raise MissingExtraError where a package is missing that makes a file, RecipeErrors for one that is not judged."""
     if request.kind == "dxf":
         demand_package("ezdxf", "a DXF file needs ezdxf")
+    demand_flanks(design.recipe, request, design.recipe.form.depth)
     if request.format.program:
         _demand_judged(design, request)
 

@@ -11,7 +11,7 @@ from camgeo.capabilities.linear.figures import bears
 from camgeo.capabilities.linear.plate import chamfer_checks, wall_checks
 from camgeo.checks.declared import LIMIT
 from camgeo.measures.placed import Figure, figure_check, limit_checks
-from camgeo.measures.rule_remark import RuleRemark
+from camgeo.measures.rule_remark import RuleRemark, pressure_remarks, source_remarks
 from camgeo.measures.units import in_units
 from camgeo.recipe.figures import LEAST_WALL, PITCH_RADIUS, PRESSURE_ANGLE
 from kin.numeric.check import Check
@@ -76,14 +76,8 @@ def remarks_on(design: LinearDesign, figures: Sequence[Figure]) -> tuple[RuleRem
         sentence = f"the pressure angle reaches {steep.value:.4g} degrees, where {rule:g} is usual"
         remarks.append(RuleRemark(PRESSURE_ANGLE, steep.value, rule, "deg", sentence, steep.at, "mm"))
     remarks += _struck(design)
-    kept = design.motion.kept
-    remarks += [] if kept is None else [RuleRemark(name, None, None, "", told) for name, told in kept.remarks]
-    pressure, bearable = known.get("contact-pressure"), bears(design)
-    if pressure is not None and bearable is not None and pressure.value > bearable:
-        sentence = f"the contact's pressure reaches {pressure.value:.4g} N/mm^2, the materials bear {bearable:.4g}"
-        remarks.append(
-            RuleRemark("contact-pressure", pressure.value, bearable, pressure.unit, sentence, pressure.at, "mm")
-        )
+    remarks += source_remarks(design.motion.kept)
+    remarks += pressure_remarks(known.get("contact-pressure"), bears(design), "mm")
     return tuple(remarks)
 
 

@@ -90,9 +90,8 @@ def write_rows(recipe: Order, request: FileRequest, slave: Slave, most: float, p
     try:
         rows, found = choice.chosen()
     except RowsError as error:
-        field = recipe.field_of(request)
-        place = "export.tolerance" if request.tolerance is None else field
-        place = place if error.option == "tolerance" else f"{field}.csv.{error.option}"
+        option = f"{recipe.field_of(request)}.csv.{error.option}"
+        place = recipe.tolerance_field(request) if error.option == "tolerance" else option
         raise recipe.error(place, error.problem, error.value, error.remedy) from error
     per = "; velocity and acceleration by degree of the master" * (controller.order > 0)
     head = (

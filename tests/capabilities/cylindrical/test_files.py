@@ -45,6 +45,7 @@ from camgeo.cli.main import main
 from camgeo.files.mesh import Mesh
 from camgeo.formats.stl import write_stl
 from camgeo.output.extension import numbers_of
+from camgeo.schema.errors import RecipeErrors
 from kin.numeric.records import replace
 
 if TYPE_CHECKING:
@@ -90,6 +91,16 @@ def test_a_groove_as_a_solid(tmp_path: Path) -> None:
     demand_foreseen(tmp_path, report)
     assert found["drum"]["floor"] == 37.5
     assert {entry["name"] for entry in found["drum"]["figures"]} >= {"pressure-angle", "contact-length", "play"}
+
+
+def test_a_solid_too_coarse_for_its_flanks_is_refused_with_a_tolerance_that_does(tmp_path: Path) -> None:
+    text = changed(GROOVE, ("tolerance: 0.02", "tolerance: 100"))
+    with pytest.raises(RecipeErrors, match=r"export\.tolerance: the flanks are 12\.5 mm deep.*; give at most 6\.25 mm"):
+        exported(tmp_path, text)
+    assert exported(tmp_path, changed(text, ("100", "6.25"))).ok
+    own = changed(text, ("100", "1"), ("[stl]", "[{stl: {tolerance: 7}}]"))
+    with pytest.raises(RecipeErrors, match=r"export\.files\[0\].*given 7 mm; give at most 6\.25 mm"):
+        exported(tmp_path, own)
 
 
 @pytest.mark.costly("solids of each other track, judged")

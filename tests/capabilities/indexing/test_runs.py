@@ -53,6 +53,19 @@ def test_a_run_writes_table_page_and_report(text: str, tmp_path: Path) -> None:
     assert "contact-length" in page
 
 
+@pytest.mark.parametrize(("text", "least"), [(BARREL, "6.5"), (GLOBOID, "6.75")], ids=["barrel", "globoid"])
+def test_a_solid_too_coarse_for_its_flanks_is_refused_with_a_tolerance_that_does(
+    text: str, least: str, tmp_path: Path
+) -> None:
+    coarse = changed(text, ("tolerance: 0.01", "tolerance: 20"))
+    wanted = rf"export\.tolerance: the flanks are .* given 20 mm; give at most {least} mm"
+    with pytest.raises(RecipeErrors, match=wanted):
+        camgeo.export(written(tmp_path, coarse), tmp_path / "out")
+    assert camgeo.export(
+        written(tmp_path, changed(coarse, ("tolerance: 20", f"tolerance: {least}"))), tmp_path / "out"
+    ).ok
+
+
 @pytest.mark.slow
 @pytest.mark.parametrize("head", ["", "rotation: ccw\n"])
 @pytest.mark.parametrize("text", [BARREL, GLOBOID], ids=["barrel", "globoid"])
