@@ -179,11 +179,10 @@ def _check_track(cam: Values, reader: Reader) -> None:
     if not floor > least:
         at = f"{path}.from" if kind == "end" else f"cam.track.{kind}.depth"
         most = radius - _size(roller)
-        remedy = (
-            f"give more than {reader.shown(_size(roller) + FLOOR_GAP)}, or a smaller roller"
-            if kind == "end"
-            else f"give less than {reader.shown(most)}, or a smaller roller"
-        )
+        remedy = "give a smaller roller, or a larger blank"
+        if most > FLOOR_GAP:
+            end = f"more than {reader.shown(_size(roller) + FLOOR_GAP)}"
+            remedy = f"give {end if kind == 'end' else f'less than {reader.shown(most)}'}, or a smaller roller"
         reader.fault_at(at, "the floor is no farther from the axis than the radius of the roller", None, remedy)
         return
     clearance = track["clearance"] if kind == "groove" and "clearance" in track else 0.0

@@ -149,6 +149,8 @@ REFUSED = [
         ("over: 60, law: cycloidal}, {dwell: 120}", "over: 9, law: cycloidal}, {dwell: 171}"),
         "reach into one another",
     ),
+    (GROOVE, ("radius: 10", "radius: 100"), "the radius of the roller; give a smaller roller, or a larger blank"),
+    (TOP, ("radius: 10", "radius: 49.9"), "the radius of the roller; give a smaller roller, or a larger blank"),
 ]
 
 
