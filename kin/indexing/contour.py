@@ -29,7 +29,8 @@ OPEN = 0.2  # of the tolerance, or of a greater distance: what the proof may lea
 PLAIN = 0.5  # of the tolerance: a bound below it need not be closer
 ROUNDS = 24  # of dividing triangles
 FAR, FEW = 10.0, 2  # times the tolerance: a surface found so far off is divided in no more rounds than these
-MOST_PARTS = 2_000_000  # triangles at a time while dividing
+MOST_AT_ONCE = 200_000  # triangles of a file
+MOST_PARTS = 2_000_000  # of these, while dividing
 LEAST_PARTS = 4  # of an edge that may span a track
 APART = 0.1  # rad: worst angles of a triangle's corners that are farther apart are not of one place of a flank
 ASKED = 16  # triangles in each round, those of the greatest bounds, whose corners are measured
@@ -156,10 +157,17 @@ def bare(rollers: Rollers, body: Body, known: Known, which: Indices) -> Peak:
     corners = body.corners[which]
     flat = corners.ravel()
     place = flat[int(known.distance[flat].argmax())]
-    value, at = float(known.distance[place]), float(known.worst.theta[place])
-    triangles, theta = body.points[corners], known.worst.theta[corners]
+    peak = Peak(float(known.distance[place]), 0.0, float(known.worst.theta[place]))
+    for begin in range(0, len(corners), MOST_AT_ONCE):
+        block = corners[begin : begin + MOST_AT_ONCE]
+        peak = _raised(peak, rollers, body.points[block], known.worst.theta[block])
+    return peak
+
+
+def _raised(peak: Peak, rollers: Rollers, triangles: Array, theta: Array) -> Peak:
+    """How far a surface is bare with triangles (t, 3, 3), which have these worst angles (t, 3), beside the `peak`."""
+    value, at, bound = peak.value, peak.at, peak.value + peak.remainder
     theta = theta[:, :1] + np.remainder(theta - theta[:, :1] + math.pi, TURN) - math.pi
-    bound = value
     for turn in range(ROUNDS + 1):
         apart = np.ptp(theta, axis=1)
         strayed = np.flatnonzero(apart > APART)

@@ -28,6 +28,7 @@ from camgeo.capabilities.indexing.sheet import sheet_of
 from camgeo.capabilities.indexing.verdicts import intended
 from camgeo.cli.main import main
 from camgeo.output.extension import numbers_of
+from kin.indexing import contour
 from kin.indexing.contour import Known, bare
 from kin.indexing.faces import Body
 from kin.indexing.judge import judge_mesh
@@ -107,8 +108,13 @@ def test_a_sound_cam_is_accepted_with_fewer_triangles(text: str) -> None:
 @pytest.mark.costly("rollers at all angles against the inside of triangles")
 @FORMS
 @pytest.mark.parametrize("body", [made, simplified])
-def test_how_bare_triangles_are_agrees_with_positions(text: str, body: Callable[[str], Solid]) -> None:
-    """A flank that bulges is barest within triangles; what the proof leaves open there is a fifth of the tolerance."""
+def test_how_bare_triangles_are_agrees_with_positions(
+    text: str, body: Callable[[str], Solid], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """A flank that bulges is barest within triangles; what the proof leaves open there is a fifth of the tolerance.
+
+    So it is where a file has more triangles than are divided at a time.
+    """
     points, corners = body(text)
     intent, roller = intended(shared_design(text)), 9.0 if text == BARREL else 8.0
     read = checked(Triangles(points[corners], "binary"), Path("cam.stl"))
@@ -119,14 +125,19 @@ def test_how_bare_triangles_are_agrees_with_positions(text: str, body: Callable[
     )
     sides = np.roll(own.points[own.corners[flanks]], -1, axis=1) - own.points[own.corners[flanks]]
     which = flanks[np.argsort(np.linalg.norm(sides, axis=2).max(axis=1))[-LONGEST:]]
-    peak = bare(rollers, own, Known.of(rollers, own, np.unique(own.corners[which])), which)
+    known = Known.of(rollers, own, np.unique(own.corners[which]))
+    peaks = [bare(rollers, own, known, which)]
+    monkeypatch.setattr(contour, "MOST_AT_ONCE", LONGEST // 30)
+    monkeypatch.setattr(contour, "MOST_PARTS", int(1.9 * LONGEST))
+    peaks.append(bare(rollers, own, known, which))
     shares = np.array([(i, j, 8 - i - j) for i in range(9) for j in range(9 - i)]) / 8.0
     places = np.einsum("wc,tcx->twx", shares, own.points[own.corners[which]]).reshape(-1, 3)
     places[:, 2] += intent.height
     found = float(nearest(AWAY[text], LAWS[text], places, 2, 25).max()) - roller
-    assert found <= peak.value + peak.remainder
-    assert peak.value <= found + 0.1 * TOLERANCE
-    assert peak.value + peak.remainder <= max(found + 0.3 * TOLERANCE, 0.5 * TOLERANCE)
+    for peak in peaks:
+        assert found <= peak.value + peak.remainder
+        assert peak.value <= found + 0.1 * TOLERANCE
+        assert peak.value + peak.remainder <= max(found + 0.3 * TOLERANCE, 0.5 * TOLERANCE)
 
 
 @pytest.mark.costly("a verdict on a solid")
