@@ -128,7 +128,7 @@ def test_how_bare_triangles_are_agrees_with_positions(
     known = Known.of(rollers, own, np.unique(own.corners[which]))
     peaks = [bare(rollers, own, known, which)]
     monkeypatch.setattr(contour, "MOST_AT_ONCE", LONGEST // 30)
-    monkeypatch.setattr(contour, "MOST_PARTS", int(1.9 * LONGEST))
+    monkeypatch.setattr(contour, "MOST_PARTS", 10 * LONGEST)
     peaks.append(bare(rollers, own, known, which))
     shares = np.array([(i, j, 8 - i - j) for i in range(9) for j in range(9 - i)]) / 8.0
     places = np.einsum("wc,tcx->twx", shares, own.points[own.corners[which]]).reshape(-1, 3)
