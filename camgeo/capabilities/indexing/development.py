@@ -42,6 +42,7 @@ SPLITS = 8  # rounds by which a part without a bound is halved
 WIDEN, GROW = 1e-9, 1.5  # mm by which places along a roller are enclosed at first, and times as much each time
 SETTLE = 12  # rounds of enclosing
 WIDEST = TURN / 36.0  # rad between two points, however little a line bends
+CHORDS = 0.8  # of the tolerance, for chords: the judge's search of the nearest roller takes some
 MOST_POINTS = 2_000_000  # of one line
 FLANKS: tuple[Literal["lower", "upper"], ...] = ("lower", "upper")
 COLOURS = {"lower": 5, "upper": 1}  # of AutoCAD, by flank
@@ -75,7 +76,7 @@ def developed_line(flank: Flank, radius: float, tolerance: float) -> tuple[Array
         bend = unrolled_bends(flank, look, radius)
     if not np.isfinite(bend).all():
         raise ToleranceError(f"a development within {tolerance:.3g} mm is not proved", 2.0 * tolerance)
-    count = np.maximum(np.ceil(np.diff(look) / widest(bend, tolerance)), 1.0)
+    count = np.maximum(np.ceil(np.diff(look) / widest(bend, CHORDS * tolerance)), 1.0)
     if count.sum() > MOST_POINTS:
         least = tolerance * (float(count.sum()) / MOST_POINTS) ** 2
         raise ToleranceError(f"a development within {tolerance:.3g} mm would take too many points", least)

@@ -118,3 +118,13 @@ def test_a_drawing_is_accepted(text: str, tmp_path: Path) -> None:
         TURN * 50.0,
         rel_tol=1e-9,
     )
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("tolerance", ["0.0001", "0.00003", "0.00001"])
+def test_a_fine_drawing_leaves_room_for_its_verdict(tolerance: str, tmp_path: Path) -> None:
+    from camgeo.cli.main import main
+
+    path = tmp_path / "index.yaml"
+    path.write_text(f"{BARREL}export: {{tolerance: {tolerance}, files: [dxf]}}\n")
+    assert main(["export", str(path), "--out", str(tmp_path)]) == 0
