@@ -13,6 +13,7 @@ import pytest
 from capabilities.indexing.made_indexers import Rollers, changed, design_of, shared_design, window
 from capabilities.indexing.rollers import TURN, Indexed, barrel_away, nearest
 from support.heavy import ezdxf
+from support.places import ROOT
 
 from camgeo.capabilities.indexing.development import developed_line, drawn, unrolled, unrolled_bends
 from camgeo.fit.nodes import ToleranceError
@@ -121,10 +122,9 @@ def test_a_drawing_is_accepted(text: str, tmp_path: Path) -> None:
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("tolerance", ["0.0001", "0.00003", "0.00001"])
-def test_a_fine_drawing_leaves_room_for_its_verdict(tolerance: str, tmp_path: Path) -> None:
+@pytest.mark.parametrize("tolerance", [1e-4, 3e-5, 1e-5])
+def test_a_fine_drawing_leaves_room_for_its_verdict(tolerance: float, tmp_path: Path) -> None:
     from camgeo.cli.main import main
 
-    path = tmp_path / "index.yaml"
-    path.write_text(f"{BARREL}export: {{tolerance: {tolerance}, files: [dxf]}}\n")
-    assert main(["export", str(path), "--out", str(tmp_path)]) == 0
+    shipped = ROOT / "recipes" / "indexing" / "index-barrel.yaml"
+    assert main(["export", str(shipped), "--only", "dxf", "--tolerance", str(tolerance), "--out", str(tmp_path)]) == 0
