@@ -139,9 +139,8 @@ async function webmOf(film, said) {
 for (const [id, make] of [["gif", gifOf], ["webm", webmOf]]) {
   byId(id).addEventListener("click", async () => {
     const mine = made;
-    cut = false;
     byId("hand-told").textContent = "";
-    const file = await atWork(byId(id), "filming the drawing", (said) => make(filmed(), said), () => (cut = true));
+    const file = await atWork(byId(id), "filming the drawing", (said) => ((cut = false), make(filmed(), said)), () => (cut = true));
     if (!file || made !== mine) return;
     if (file.faults) byId("hand-told").textContent = file.faults[0].told;
     else handOver(file);

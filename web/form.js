@@ -24,7 +24,12 @@ function goTo(line, column) {
   area.scrollIntoView({ block: "nearest" });
 }
 
-let typed = 0;
+let typed = 0; // timer of letters that are read when no more come; 0 for none
+function endTyping() {
+  clearTimeout(typed);
+  typed = 0;
+}
+
 byId("text").addEventListener("input", () => {
   noteStep("text");
   changeCount += 1;
@@ -176,7 +181,9 @@ async function showAbsent() {
   const shape = formOf;
   const { name, text } = recipe;
   const answer = await work.ask("absent", { name, text }, encodedTables());
-  if (!answer?.absent || shape !== formOf) return;
+  if (shape !== formOf) return;
+  if (!answer) formOf = ""; // it was stopped: the boxes are made anew with the next answer, and it is asked again
+  if (!answer?.absent) return;
   for (const [word, why] of Object.entries(answer.absent)) {
     const tick = byId("form").querySelector(`.ticks [value="${CSS.escape(word)}"]`);
     if (!tick) continue;
@@ -332,7 +339,7 @@ byId("form").addEventListener("submit", (event) => event.preventDefault());
 let possible = [];
 async function showMore() {
   const { name, text } = recipe;
-  const answer = await work.ask("more", { name, text });
+  const answer = await work.ask("more", { name, text }, encodedTables());
   if (!answer || recipe.text !== text) return;
   if (!answer.more) return; // a text that is no recipe yet: its fault stands there already
   const list = byId("add-path");
