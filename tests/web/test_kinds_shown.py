@@ -11,14 +11,12 @@ import numpy as np
 import pytest
 from PIL import Image, ImageSequence
 from support import tab
-from support.pages import wait
 from support.places import RECIPES
 
 from camgeo.api.root import root_of
 from camgeo.recipe.loading import load_order_text
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator
     from pathlib import Path
 
 pytestmark = [pytest.mark.slow, pytest.mark.skipif(bool(tab.why_not()), reason=tab.why_not())]
@@ -29,14 +27,10 @@ def shipped(name: str) -> str:
 
 
 @pytest.fixture
-def desk(other_page: tab.Tab) -> Iterator[tab.Tab]:
-    """The page with a cam that stands still, wide again afterwards."""
-    page = other_page
-    page.ask("document.documentElement.dataset.playing === 'true' && byId('play').click()")
-    yield page
-    page.ask("recipe.beside = null")
-    page.browser.size(1280, 800)
-    page.browser.call("Emulation.setTouchEmulationEnabled", enabled=False)
+def desk(other_page: tab.Tab) -> tab.Tab:
+    """The page with a cam that stands still."""
+    other_page.stand()
+    return other_page
 
 
 def turn_to(page: tab.Tab, at: float) -> None:
@@ -64,8 +58,7 @@ def test_a_plate_slides_and_its_joint_is_moved_by_a_finger(desk: tab.Tab, width:
     assert "lift 20.00 mm" in desk.text_of("now")
     desk.browser.call("Emulation.setTouchEmulationEnabled", enabled=True)
     handle = "document.querySelector('[data-joint=\"1\"]')"
-    desk.ask(f"{handle}.scrollIntoView({{ block: 'center', behavior: 'instant' }})")
-    x, y = desk.ask(f"(({{x, y, width, height}}) => [x + width / 2, y + height / 2])({handle}.getBoundingClientRect())")
+    x, y = desk.middle(handle)
     across = desk.ask("frame().width") / 200.0
     desk.browser.touch([(x, y), (x + 4 * across, y), (x + 10 * across, y)])
     desk.settle()
@@ -127,20 +120,18 @@ def test_a_drum_is_made_judged_and_its_solid_shown_where_it_is_late_unrolled(des
     files = desk.ask("[...document.querySelectorAll('#files a')].map((one) => one.download)")
     assert {"drum.stl", "drum.3mf", "drum.dxf", "drum.csv", "report.json"} <= {*files}
     desk.ask("""work.ask = ((ask) => async function (call, ...rest) {
-      if (call === "solid") await new Promise((done) => setTimeout(done, 2600));
+      if (call === "solid") await new Promise((done) => (window.goOn = done));
       return ask.call(this, call, ...rest);
     })(work.ask)""")
     desk.click("solid")
     desk.wait("!byId('solid-meanwhile').hidden")
     assert desk.ask("byId('solid-unrolled').querySelectorAll('.line').length") >= 2
     assert desk.ask("document.querySelectorAll('#development').length") == 1
+    desk.ask("goOn()")
     desk.wait("!byId('solid-figure').hidden")
     assert desk.ask("byId('solid-meanwhile').hidden")
     assert desk.text_of("solid-size").startswith("80 × 80 × ")
-    desk.ask("delete work.ask")
-    desk.click("pdf")
-    wait((tmp_path / "drum.pdf").is_file)
-    assert b"unrolled at a radius of 40 mm" in (tmp_path / "drum.pdf").read_bytes()
+    assert b"unrolled at a radius of 40 mm" in desk.saved("pdf", tmp_path / "drum.pdf")
     assert desk.browser.problems == []
 
 
@@ -149,8 +140,7 @@ def test_a_plate_is_made_and_its_judged_page_is_let_in(desk: tab.Tab) -> None:
     desk.load("groove", shipped("linear/plate-groove").replace("files: [dxf, stl, html]", "files: [dxf, stl]"))
     desk.judged("make")
     assert "groove.stl cannot be made in a browser" in desk.text_of("outcome")
-    desk.click("solid")
-    desk.wait("byId('hand-told').textContent")
+    desk.worked("solid")
     assert "manifold3d" in desk.text_of("hand-told")  # cuts the groove
     desk.load(
         "rack",
@@ -159,8 +149,7 @@ def test_a_plate_is_made_and_its_judged_page_is_let_in(desk: tab.Tab) -> None:
         ),
     )
     desk.judged("make")
-    desk.click("solid")
-    desk.wait("!byId('solid-figure').hidden")
+    desk.worked("solid")
     assert desk.text_of("solid-size").startswith("75 × 18 × 8 mm")  # three waves, 15 and 3 high
     assert desk.browser.problems == []
 
@@ -209,9 +198,7 @@ def test_a_film_of_a_drum_turns_it(desk: tab.Tab, tmp_path: Path) -> None:
     text = shipped("cylindrical/drum-end").replace("[stl, 3mf, ", "[").replace(", {csv: {as: flank}}", "")
     desk.load("film", text)
     desk.judged("make")
-    desk.click("gif")
-    wait((tmp_path / "film.gif").is_file)
-    film = Image.open(io.BytesIO((tmp_path / "film.gif").read_bytes()))
+    film = Image.open(io.BytesIO(desk.saved("gif", tmp_path / "film.gif")))
     pictures = [np.asarray(one.convert("RGB")).astype(int) for one in ImageSequence.Iterator(film)]
     metal = "getComputedStyle(document.querySelector('#drawing .drum .metal')).fill"
     colour = [int(part) for part in re.findall(r"\d+", desk.ask(metal))]
@@ -285,8 +272,7 @@ def test_an_indexing_cam_is_made_judged_compared_and_filmed(desk: tab.Tab, tmp_p
     assert "ok" in desk.text_of("outcome")
     files = desk.ask("[...document.querySelectorAll('#files a')].map((one) => one.download)")
     assert {"globoid.stl", "globoid.csv", "report.json"} <= {*files}
-    desk.click("solid")
-    desk.wait("!byId('solid-figure').hidden")
+    desk.worked("solid")
     # 2 (100 - sqrt(60^2 - 36^2)) = 104 mm, where no track cuts the rim
     assert re.match(r"[\d.]+ × 104 × 72 mm", desk.text_of("solid-size"))
     desk.press("keep")
@@ -299,9 +285,7 @@ def test_an_indexing_cam_is_made_judged_compared_and_filmed(desk: tab.Tab, tmp_p
     turn_to(desk, 200.0)
     assert desk.ask("document.querySelector('#drawing .kept .metal').getAttribute('d')") != before
     desk.press("unkeep")
-    desk.click("gif")
-    wait((tmp_path / "globoid.gif").is_file)
-    film = Image.open(io.BytesIO((tmp_path / "globoid.gif").read_bytes()))
+    film = Image.open(io.BytesIO(desk.saved("gif", tmp_path / "globoid.gif")))
     pictures = [np.asarray(one.convert("RGB")).astype(int) for one in ImageSequence.Iterator(film)]
     moved = [int((np.abs(one - pictures[0]).sum(axis=2) > 30).sum()) for one in pictures]
     assert max(moved) > 1000
@@ -333,7 +317,6 @@ def test_what_is_not_seen_or_shall_not_move_stands_still(desk: tab.Tab) -> None:
     before = desk.ask(at)
     desk.ask(rest)
     assert desk.ask(at) == before
-    desk.browser.call("Emulation.setEmulatedMedia", features=[])
 
 
 def test_a_kind_is_chosen_among_the_starters(desk: tab.Tab) -> None:
