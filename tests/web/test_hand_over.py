@@ -145,6 +145,7 @@ def test_a_film_that_is_stopped_leaves_the_page_at_work(desk: tab.Tab) -> None:
         if (!byId("busy").textContent.includes("picture 2 of 72")) return;
         watch.disconnect();
         byId("stop").click();
+        byId("gif").click(); // which does not take the stop back
         done();
       });
       watch.observe(byId("busy"), { childList: true });

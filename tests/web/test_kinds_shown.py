@@ -11,7 +11,7 @@ import numpy as np
 import pytest
 from PIL import Image, ImageSequence
 from support import tab
-from support.places import RECIPES
+from support.places import RECIPES, script
 
 from camgeo.api.root import root_of
 from camgeo.recipe.loading import load_order_text
@@ -190,6 +190,17 @@ def test_a_kept_plate_stands_at_the_same_travel_and_its_curves_too(desk: tab.Tab
     desk.load("disc", shipped("disc-roller"))  # a turn is compared by its share, and has no common axis
     assert desk.ask("document.querySelectorAll('.plot .line.kept').length") == 0
     desk.press("unkeep")
+
+
+# needs: linear
+def test_a_link_stands_at_its_place_though_the_plate_before_it_was_shorter(desk: tab.Tab) -> None:
+    disc = shipped("disc-roller")
+    link = script("build").link_to("disc", disc, ("kept", disc), 300.0)
+    desk.load("feed", shipped("linear/plate-feed"))  # of 200 mm
+    desk.ask(f"location.hash = {link[link.index('#') :]!r}")
+    desk.wait("recipe.name === 'disc'")
+    desk.settle()
+    assert desk.ask("Number(document.documentElement.dataset.at)") == 300.0
 
 
 # needs: cylindrical

@@ -39,8 +39,9 @@ def test_no_link_that_is_cut_or_has_another_letter_passes(page: tab.Tab) -> None
 def test_a_spoilt_link_shows_nothing_and_stays_until_a_recipe_is_begun(page: tab.Tab) -> None:
     page.load("disc-roller", TEXT)
     cut = page.written()[:-4]
-    page.ask(f"location.hash = {cut!r}")
+    page.ask(f"byId('text').dispatchEvent(new Event('input')); location.hash = {cut!r}")
     page.wait("!byId('notice').hidden")
+    page.ask("new Promise((done) => setTimeout(done, 150))")  # behind the letters that were typed
     page.settle()
     assert "cut or altered" in page.text_of("notice")
     assert page.text_of("verdict") == "no recipe"
@@ -129,6 +130,17 @@ def test_going_back_is_not_undone_by_an_address_that_is_still_to_be_written(page
     page.wait("recipe.text.includes('bore: 12')")
     page.settle()
     assert "bore: 12" in page.text
+
+
+def test_a_link_is_followed_where_an_address_is_written_before_the_page_hears_of_it(page: tab.Tab) -> None:
+    page.load("linked", TEXT.replace("bore: 10", "bore: 15"))
+    link = page.written()
+    page.load("disc-roller", TEXT)
+    page.written()
+    page.ask(f"recipe.name = 'other'; remember(); location.hash = {link!r}; writeAddress()")
+    page.wait("recipe.name === 'linked'")
+    page.settle()
+    assert page.written() == link
 
 
 def test_the_last_design_stays_in_this_browser_until_it_is_forgotten(page: tab.Tab) -> None:

@@ -351,6 +351,41 @@ def test_of_designs_that_wait_the_newest_is_made(page: tab.Tab) -> None:
     assert page.text == TEXTS["disc-roller"]
 
 
+def test_letters_are_read_at_once_where_make_is_pressed_behind_them(page: tab.Tab) -> None:
+    page.load("disc-roller", TEXTS["disc-roller"])
+    page.ask("""(() => {
+      byId("text").value = recipe.text.replace("base_radius: 36", "base_radius: 37");
+      byId("text").dispatchEvent(new Event("input"));
+      byId("make").click();
+    })()""")
+    page.settle()
+    assert page.ask("recipe.fields.find(({ path }) => path === 'cam.base_radius').text") == "37"
+    assert page.text_of("verdict") == "every check of the design holds"
+    assert page.text_of("busy").startswith("done in ")
+    assert page.text_of("since") == ""
+
+
+def test_what_changes_while_files_are_judged_is_not_taken_for_what_was_judged(page: tab.Tab, tmp_path: Path) -> None:
+    report = camgeo.export(camgeo.load(TEXTS["disc-roller"]), tmp_path, only=["dxf"])
+    page.load("disc-roller", TEXTS["disc-roller"])
+    page.drop("first.dxf", (report.path / "recipe.dxf").read_bytes())
+    slide = """(() => {
+      const slider = document.querySelector('[data-path="cam.base_radius"] [type=range]');
+      slider.value = Number(slider.value) + 1;
+      for (const kind of ["input", "change"]) slider.dispatchEvent(new Event(kind));
+    })()"""
+    other = "takeFiles([new File([somebodys.bytes], `next-${somebodys.name}`)])"
+    presses = [("make", slide, "Made and judged"), ("verify", slide, "first.dxf by the recipe")]
+    presses += [("verify", other, "first.dxf by the recipe")]
+    presses += [("follow", other, "What next-first.dxf does")]  # needs: follow
+    for name, meanwhile, head in presses:
+        page.ask(f"byId({name!r}).click(), {meanwhile}")
+        page.wait("!underWay")
+        page.settle()
+        assert page.text_of("judged-head") == head
+        assert page.text_of("since") == ("The recipe has changed since." if meanwhile == slide else "")
+
+
 def test_a_change_that_rests_does_not_stand_for_a_newer_one_that_was_answered_before_it(page: tab.Tab) -> None:
     """A slider that is held rests before its cam is checked; where it is let go meanwhile, the next cam does not."""
     page.ask("""(async () => {
@@ -413,6 +448,15 @@ def test_stop_ends_the_worker_and_another_one_goes_on(page: tab.Tab) -> None:
     page.wait("byId('busy').textContent === 'stopped'")
     page.settle()
     assert page.ask("byId('stop').disabled")
+    # stopped before it has said which files a browser cannot make, it says so with the next answer
+    page.ask("""new MutationObserver((_, watch) => {
+      watch.disconnect();
+      byId("make").click();
+      byId("stop").click();
+    }).observe(byId("form"), { childList: true })""")
+    page.load("support", TEXTS["support"])
+    page.wait("document.querySelectorAll('.ticks label:has(small)').length > 0")
+    page.load("four-bar", TEXTS["four-bar"])
     page.slide("linkage.ground", 81)
     assert "81" in page.text_of("form") or "ground: 81" in page.text
     assert page.ask("document.body.dataset.answered") == str(page.ask("changeCount"))
