@@ -339,7 +339,7 @@ byId("form").addEventListener("submit", (event) => event.preventDefault());
 let possible = [];
 async function showMore() {
   const { name, text } = recipe;
-  const answer = await work.ask("more", { name, text });
+  const answer = await work.ask("more", { name, text }, encodedTables());
   if (!answer || recipe.text !== text) return;
   if (!answer.more) return; // a text that is no recipe yet: its fault stands there already
   const list = byId("add-path");

@@ -474,6 +474,8 @@ def test_a_reload_and_a_link_keep_the_recipe_with_its_tables(page: tab.Tab) -> N
     assert page.text_of("faults") == ""
     page.load("support", TEXTS["support"])
     assert page.written() != link
+    page.load("disc-table", TEXTS["disc-table.yaml"])  # without its table, which is of another recipe
+    assert "disc-table.csv" in page.text_of("faults")
     page.ask(f"location.hash = {link!r}")
     page.wait("recipe.name === 'disc-table'")
     page.settle()
