@@ -13,7 +13,9 @@ async function changed() {
   showSince();
   const turn = ++changeCount;
   await designed(recipe.name, recipe.text);
-  if (turn === changeCount) tab.dataset.answered = String(turn); // an older change may end later, when its slider has rested
+  if (turn !== changeCount) return; // an older change may end later, when its slider has rested
+  tab.dataset.answered = String(turn);
+  enterWaiting();
 }
 
 // whether what was made or judged is of another recipe than the one that stands there
