@@ -40,7 +40,7 @@ AS_OPENED = """(() => {
   const own = [[work, "ask"], [document, "hidden"], [history, "pushState"], [navigator.clipboard, "writeText"]];
   for (const [one, name] of own) delete one[name];
   recipe.beside = null;
-  [keeps, step, grip] = [true, null, null];
+  [keeps, step, grip, chosen] = [true, null, null, 0];
   if (tab.dataset.answered !== String(changeCount)) changed(); // a change that nothing answers
   for (const id of ["begin", "add"]) byId(id).open = false;
   byId("with-file").hidden = true;
@@ -126,9 +126,9 @@ class Tab:
         self.settle()
         return self
 
-    def stand(self) -> None:
-        """Let the mechanism stand still."""
-        self.ask("document.documentElement.dataset.playing === 'true' && byId('play').click()")
+    def turn_to(self, at: float) -> None:
+        """Turn the mechanism to a place, at which it stands still."""
+        self.ask(f"byId('slider').value = {at}; byId('slider').dispatchEvent(new Event('input'))")
 
     def wait(self, condition: str) -> None:
         """Wait until an expression is true."""

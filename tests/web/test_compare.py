@@ -23,7 +23,7 @@ WIDE = """(() => {
 def desk(other_page: tab.Tab) -> tab.Tab:
     """The page with a cam that stands still at 0, with none kept."""
     other_page.load("first", DISC)
-    other_page.ask("byId('slider').value = 0; byId('slider').dispatchEvent(new Event('input'))")
+    other_page.turn_to(0)
     return other_page
 
 
@@ -75,7 +75,7 @@ def test_a_kept_design_turns_along(desk: tab.Tab) -> None:
     place = "document.querySelectorAll('#drawing .kept > g')[{}].getAttribute('transform')"
     count = desk.ask("document.querySelectorAll('#drawing .kept > g').length")
     still = [desk.ask(place.format(i)) for i in range(count)]
-    desk.ask("byId('slider').value = 110; byId('slider').dispatchEvent(new Event('input'))")
+    desk.turn_to(110)
     turned = [desk.ask(place.format(i)) for i in range(count)]
     assert sum(a != b for a, b in zip(still, turned, strict=True)) >= 2  # the cam and its follower
     assert sum("rotate(110.0" in one or "rotate(-110.0" in one for one in turned) == 1

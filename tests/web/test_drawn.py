@@ -31,8 +31,8 @@ PEAKS = PEAKS.replace("{dwell: 80}", "{dwell: 30}\n    - {dwell: 20}\n    - {to:
 
 @pytest.fixture
 def desk(other_page: tab.Tab) -> tab.Tab:
-    """The page with a cam that stands still."""
-    other_page.stand()
+    """The page with a cam that stands still at 0."""
+    other_page.turn_to(0)
     other_page.load("disc-roller", DISC)
     return other_page
 
@@ -296,7 +296,7 @@ def test_what_is_done_to_a_segment_is_one_step_each(desk: tab.Tab) -> None:
         assert desk.text_of("draw-told") == ""
         assert len(segments(desk.text)) == count
         assert desk.text_of("verdict").startswith("every check of the design holds")
-    desk.ask("document.getElementById('slider').value = 300; byId('slider').dispatchEvent(new Event('input'))")
+    desk.turn_to(300)
     desk.press("add-joint")
     assert len(segments(desk.text)) == 7
     assert desk.ask("recipe.done.length") == steps + 5

@@ -29,7 +29,7 @@ def desk(other_page: tab.Tab, tmp_path: Path) -> tab.Tab:
     """The page with a cam whose files are made, which stands still; what it saves goes into a folder of the test."""
     page = other_page
     page.browser.call("Page.setDownloadBehavior", behavior="allow", downloadPath=str(tmp_path))
-    page.stand()
+    page.turn_to(0)
     page.load("disc", DISC)
     page.judged("make")
     return page
@@ -87,7 +87,7 @@ def test_the_drawing_comes_as_a_pdf_unless_a_check_fails(desk: tab.Tab, tmp_path
 
 
 def test_a_film_of_the_drawing_is_an_endless_gif_of_one_turn(desk: tab.Tab, tmp_path: Path) -> None:
-    desk.ask("byId('slider').value = 33; byId('slider').dispatchEvent(new Event('input'))")
+    desk.turn_to(33)
     data = saved(desk, "gif", tmp_path / "disc.gif")
     assert desk.ask("[Number(document.documentElement.dataset.at), document.documentElement.dataset.playing]") == [
         33,

@@ -28,13 +28,9 @@ def shipped(name: str) -> str:
 
 @pytest.fixture
 def desk(other_page: tab.Tab) -> tab.Tab:
-    """The page with a cam that stands still."""
-    other_page.stand()
+    """The page with a cam that stands still at 0."""
+    other_page.turn_to(0)
     return other_page
-
-
-def turn_to(page: tab.Tab, at: float) -> None:
-    page.ask(f"byId('slider').value = {at}; byId('slider').dispatchEvent(new Event('input'))")
 
 
 def place(page: tab.Tab, body: str) -> list[float]:
@@ -53,7 +49,7 @@ def test_a_plate_slides_and_its_joint_is_moved_by_a_finger(desk: tab.Tab, width:
     desk.browser.size(width, 844)
     desk.load("feed", shipped("linear/plate-feed"))
     assert desk.text_of("verdict") == "every check of the design holds"
-    turn_to(desk, 100.0)
+    desk.turn_to(100.0)
     assert place(desk, ".cam")[:2] == pytest.approx([-100.0, 0.0])
     assert "lift 20.00 mm" in desk.text_of("now")
     desk.browser.call("Emulation.setTouchEmulationEnabled", enabled=True)
@@ -86,14 +82,14 @@ def test_a_plate_slides_and_its_joint_is_moved_by_a_finger(desk: tab.Tab, width:
 def test_a_drum_turns_and_is_unrolled_beside(desk: tab.Tab) -> None:
     text = shipped("cylindrical/drum-groove")
     desk.load("drum", text)
-    turn_to(desk, 75.0)
+    desk.turn_to(75.0)
     blank = desk.ask("[...document.querySelectorAll('#drawing .drum path')].at(-1).getAttribute('d')")
     still = root_of(recipe := load_order_text(text, "drum.yaml")).shown(recipe).still(75.0)
     (drawn,) = re.findall(r'd="([^"]+)"><title>blank</title>', still)
     np.testing.assert_allclose(numbers(blank), numbers(drawn), atol=0.02)
     places = []
     for at in (0.0, 75.0):
-        turn_to(desk, at)
+        desk.turn_to(at)
         rolled = desk.ask("document.querySelectorAll('#development .roller-at')[1].getAttribute('transform')")
         places.append([float(part) for part in re.findall(r"[\d.]+", rolled)])
     (x0, y0), (x, y) = places
@@ -165,7 +161,7 @@ def test_a_kept_drum_turns_along_in_its_own_size(desk: tab.Tab) -> None:
     assert desk.ask(wide.format(".kept")) == pytest.approx(80.0, abs=0.01)
     assert desk.ask(wide.format(".drum")) == pytest.approx(88.0, abs=0.01)
     before = desk.ask("document.querySelector('#drawing .kept .metal').getAttribute('d')")
-    turn_to(desk, 45.0)
+    desk.turn_to(45.0)
     assert desk.ask("document.querySelector('#drawing .kept .metal').getAttribute('d')") != before
     assert desk.ask("document.querySelectorAll('.plot .line.kept').length") >= 4
 
@@ -178,7 +174,7 @@ def test_a_kept_plate_stands_at_the_same_travel_and_its_curves_too(desk: tab.Tab
     desk.wait("document.querySelector('#drawing .kept') !== null")
     desk.enter("cam.motion[0].dwell", "115")
     assert desk.ask("shown.input.most") == 300
-    turn_to(desk, 150.0)
+    desk.turn_to(150.0)
     plates = desk.ask(
         "[...document.querySelectorAll('#drawing .kept > g')].map((one) => one.getAttribute('transform'))"
     )
@@ -227,7 +223,7 @@ def test_an_indexing_cam_advances_its_turret(desk: tab.Tab, name: str, at: float
     text = shipped(f"indexing/{name}")
     desk.load("dial", text)
     assert desk.text_of("verdict") == "every check of the design holds"
-    turn_to(desk, at)
+    desk.turn_to(at)
     rib = desk.ask("[...document.querySelectorAll('#drawing .indexer path')].at(-1).getAttribute('d')")
     still = root_of(recipe := load_order_text(text, "dial.yaml")).shown(recipe).still(at)
     (drawn,) = re.findall(r'd="([^"]+)"><title>rib</title>', still)
@@ -263,7 +259,7 @@ def test_rollers_of_a_dial_run_along_its_development(desk: tab.Tab) -> None:
     desk.load("dial", shipped("indexing/index-barrel"))
     scale = 364.0 / (100.0 * math.pi)
     for at in (180.0, 270.0):
-        turn_to(desk, at)
+        desk.turn_to(at)
         told = desk.ask(
             "[...document.querySelectorAll('#development .roller-at')].map((one) => one.getAttribute('transform'))"
         )
@@ -293,7 +289,7 @@ def test_an_indexing_cam_is_made_judged_compared_and_filmed(desk: tab.Tab, tmp_p
     assert desk.ask(tall.format(".kept")) == pytest.approx(72.0, abs=0.01)
     assert desk.ask(tall.format(".indexer")) == pytest.approx(66.0, abs=0.01)
     before = desk.ask("document.querySelector('#drawing .kept .metal').getAttribute('d')")
-    turn_to(desk, 200.0)
+    desk.turn_to(200.0)
     assert desk.ask("document.querySelector('#drawing .kept .metal').getAttribute('d')") != before
     desk.press("unkeep")
     film = Image.open(io.BytesIO(desk.saved("gif", tmp_path / "globoid.gif")))

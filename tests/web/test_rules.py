@@ -38,7 +38,7 @@ def test_no_rule_fails_on_the_judged_page(tmp_path: Path, tmp_path_factory: pyte
 def test_no_rule_fails_open_or_shut_with_a_fault_or_without(page: tab.Tab) -> None:
     page.load("disc-roller", starter("disc-roller"))
     page.ask(f"{AXE.read_text('utf-8')};1")
-    page.stand()
+    page.turn_to(0)
     page.press("keep")
     assert page.ask("byId('beside').hidden") is False
     page.judged("make")
