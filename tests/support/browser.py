@@ -39,9 +39,9 @@ _FETCHED = {"chrome", "headless_shell", "chrome-headless-shell"}
 REPLACED = ("navigated or closed", "context was destroyed", "Cannot find context", "Cannot find default execution")
 
 
-# what observes sizes hears of them behind the next frame; colours go over into others
-SHOWN = """new Promise((done) => requestAnimationFrame(() => requestAnimationFrame(done)))
-  .then(() => Promise.allSettled(document.getAnimations().map((one) => one.finished))).then(() => true)"""
+# what observes sizes hears of them behind the next frame
+SHOWN = "new Promise((done) => requestAnimationFrame(() => requestAnimationFrame(done)))"
+GONE_OVER = "Promise.allSettled(document.getAnimations().map((one) => one.finished)).then(() => true)"  # colours
 
 
 class ReplacedError(AssertionError):

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 import pytest
 from support import pyodide, tab
-from support.browser import Browser
+from support.browser import GONE_OVER, Browser
 
 import camgeo
 from camgeo.recipe.starter import starter
@@ -32,6 +32,7 @@ def test_no_rule_fails_on_the_judged_page(tmp_path: Path, tmp_path_factory: pyte
         for width in (390, 1280):
             for dark in (False, True):
                 browser.size(width, 844, dark=dark)
+                browser.ask(GONE_OVER)
                 assert json.loads(browser.ask(FAILING)) == []
 
 
@@ -52,4 +53,5 @@ def test_no_rule_fails_open_or_shut_with_a_fault_or_without(page: tab.Tab) -> No
         for width in (390, 1280):
             for dark in (False, True):
                 page.browser.size(width, 844, dark=dark)
+                page.ask(GONE_OVER)
                 assert json.loads(page.ask(FAILING)) == []
