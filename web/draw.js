@@ -298,7 +298,7 @@ byId("segment").addEventListener("change", () => {
   showSegments();
   showHandles();
 });
-byId("segment-law").addEventListener("change", () => {
+whenRead(byId("segment-law"), () => {
   const field = fieldAt(chosen, "law");
   if (field) edit([[field, (field.before || "") + byId("segment-law").value]], null);
 });

@@ -79,15 +79,16 @@ function markOlder(words) {
   byId("since").textContent = words;
 }
 
-function showJudged(answer, head, rejected = "") {
+// what was made or judged of a recipe, which may have changed meanwhile
+function showJudged(answer, head, { name, text }, rejected = "") {
   const judged = byId("judged");
   judged.hidden = false;
   judged.classList.remove("older");
-  judgedText = recipe.text;
-  byId("since").textContent = "";
+  judgedText = text;
+  showSince();
   byId("judged-head").textContent = head;
   const absent = (answer.missing || []).map(({ what, why }) => `\n${what} cannot be made in a browser: ${why}`);
-  const elsewhere = `\nSave the recipe: camgeo export ${recipe.name}.yaml makes what is left out here, on a machine.`;
+  const elsewhere = `\nSave the recipe: camgeo export ${name}.yaml makes what is left out here, on a machine.`;
   const missing = absent.join("") + (absent.length ? elsewhere : "");
   byId("outcome").textContent = `${answer.verdict}${rejected && !answer.ok ? `\n${rejected}` : ""}${missing}`;
   byId("next").replaceChildren();
@@ -102,13 +103,13 @@ function showJudged(answer, head, rejected = "") {
 }
 
 byId("make").addEventListener("click", async () => {
-  clearTimeout(typed);
+  if (typed) changed();
   const { name, text, tables } = recipe;
   byId("faults").replaceChildren();
   const answer = await long(byId("make"), "making and judging", "make", { name, text }, encodedTables());
   if (!answer) return;
   if (answer.faults) return showFaults(answer.faults, answer.trace);
-  showJudged(answer, "Made and judged", "A check fails, so no file to make it from is given out; the page below shows which.");
+  showJudged(answer, "Made and judged", { name, text }, "A check fails, so no file to make it from is given out; the page below shows which.");
   takeMade({ name, text, tables, files: answer.files, ok: answer.ok });
 });
 
@@ -177,8 +178,9 @@ async function onForeign(button, words, call, input) {
 
 byId("verify").addEventListener("click", async () => {
   const { name, text } = recipe;
-  const answer = await onForeign(byId("verify"), "judging", "verify", { name, text, file: somebodys.name, units: byId("units").value, gap: givenGap() });
-  if (answer) showJudged(answer, `${somebodys.name} by the recipe`);
+  const file = somebodys.name; // another one may come meanwhile
+  const answer = await onForeign(byId("verify"), "judging", "verify", { name, text, file, units: byId("units").value, gap: givenGap() });
+  if (answer) showJudged(answer, `${file} by the recipe`, { name, text });
 });
 
 byId("judge-form").addEventListener("submit", (event) => event.preventDefault());

@@ -139,9 +139,12 @@ async function webmOf(film, said) {
 for (const [id, make] of [["gif", gifOf], ["webm", webmOf]]) {
   byId(id).addEventListener("click", async () => {
     const mine = made;
-    cut = false;
     byId("hand-told").textContent = "";
-    const file = await atWork(byId(id), "filming the drawing", (said) => make(filmed(), said), () => (cut = true));
+    const begin = (said) => {
+      cut = false; // of one that is under way it stays as it is
+      return make(filmed(), said);
+    };
+    const file = await atWork(byId(id), "filming the drawing", begin, () => (cut = true));
     if (!file || made !== mine) return;
     if (file.faults) byId("hand-told").textContent = file.faults[0].told;
     else handOver(file);

@@ -57,9 +57,11 @@ function follower() {
 tab.addEventListener("chosen", showFollower);
 byId("follow-form").addEventListener("submit", async (event) => {
   event.preventDefault();
-  const answer = await onForeign(byId("follow"), "following", "follow", { file: somebodys.name, follower: follower() });
+  const of = snapshot();
+  const file = somebodys.name; // another one may come meanwhile
+  const answer = await onForeign(byId("follow"), "following", "follow", { file, follower: follower() });
   if (!answer) return;
-  showJudged(answer, `What ${somebodys.name} does`);
+  showJudged(answer, `What ${file} does`, of);
   if (!answer.recipe) return;
   const button = element("button", { type: "button", className: "main" }, "Make it the recipe");
   button.addEventListener("click", () => {

@@ -24,7 +24,12 @@ function goTo(line, column) {
   area.scrollIntoView({ block: "nearest" });
 }
 
-let typed = 0;
+let typed = 0; // timer of letters that are read when no more come; 0 for none
+function endTyping() {
+  clearTimeout(typed);
+  typed = 0;
+}
+
 byId("text").addEventListener("input", () => {
   noteStep("text");
   changeCount += 1;
@@ -176,13 +181,36 @@ async function showAbsent() {
   const shape = formOf;
   const { name, text } = recipe;
   const answer = await work.ask("absent", { name, text }, encodedTables());
-  if (!answer?.absent || shape !== formOf) return;
+  if (shape !== formOf) return;
+  if (!answer) formOf = ""; // it was stopped: the boxes are made anew with the next answer, and it is asked again
+  if (!answer?.absent) return;
   for (const [word, why] of Object.entries(answer.absent)) {
     const tick = byId("form").querySelector(`.ticks [value="${CSS.escape(word)}"]`);
     if (!tick) continue;
     tick.parentElement.title = why;
     tick.parentElement.append(" ", element("small", {}, "not in a browser"));
   }
+}
+
+// What is entered while the text is read, when no field has its place, is entered behind that: into the same box, if it
+// stands there still.
+let waiting = null;
+function enterWaiting() {
+  const act = waiting;
+  waiting = null;
+  if (recipe.fields.length) act?.();
+}
+
+function whenRead(box, act) {
+  const held = box.type === "checkbox" ? "checked" : "value";
+  box.addEventListener("change", () => {
+    if (recipe.fields.length) return act();
+    const given = box[held];
+    waiting = () => {
+      box[held] = given;
+      if (box.isConnected) act();
+    };
+  });
 }
 
 // of a key whose name does not say what people look for
@@ -197,7 +225,7 @@ function row(field, index) {
   if (field.kind === "choice") {
     const shown = (word) => (field.before && word === field.text ? `${word} (by default)` : word);
     const select = element("select", { id, className: "wide" }, ...field.choices.map((word) => new Option(shown(word), word)));
-    select.addEventListener("change", () => {
+    whenRead(select, () => {
       const chosen = recipe.fields[index];
       edit([[chosen, (chosen.before || "") + select.value]], null); // before it stands its key, where the text has none
     });
@@ -208,7 +236,7 @@ function row(field, index) {
     name.replaceWith(element("span", { title: field.about }, label(field.path)));
     const boxes = field.choices.map((word) => {
       const tick = element("input", { type: "checkbox", value: word });
-      tick.addEventListener("change", () => {
+      whenRead(tick, () => {
         const ticked = [...made.querySelectorAll("input")].filter((entry) => entry.checked).map((entry) => entry.value);
         const kept = recipe.fields[index].words.filter((entry) => ticked.includes(entry));
         if (!ticked.length) tick.checked = true;
@@ -221,10 +249,11 @@ function row(field, index) {
   }
   const box = element("input", { id, className: field.kind === "number" ? "box" : "wide" });
   if (field.kind === "number") box.inputMode = "decimal";
-  box.addEventListener("change", () => entered(recipe.fields[index], box));
+  whenRead(box, () => entered(recipe.fields[index], box));
   box.addEventListener("keydown", (event) => {
-    if (event.key === "Enter") event.preventDefault();
-    if (event.key === "Enter") entered(recipe.fields[index], box);
+    if (event.key !== "Enter") return;
+    event.preventDefault();
+    box.dispatchEvent(new Event("change"));
   });
   box.setAttribute("aria-describedby", `fault-${index}`);
   made.append(box);
@@ -246,7 +275,6 @@ function pointed(text) {
 
 // what stands in a box: a number with a point or a comma, with or without a unit, or a text
 function entered(field, box) {
-  if (!field) return;
   const text = box.value.trim();
   if (!text) showBoxFaults([{ path: field.path, told: `empty: give a value${field.kind === "number" && field.value === null ? "" : `, such as ${field.text}`}` }]);
   if (!text) return;
@@ -332,7 +360,7 @@ byId("form").addEventListener("submit", (event) => event.preventDefault());
 let possible = [];
 async function showMore() {
   const { name, text } = recipe;
-  const answer = await work.ask("more", { name, text });
+  const answer = await work.ask("more", { name, text }, encodedTables());
   if (!answer || recipe.text !== text) return;
   if (!answer.more) return; // a text that is no recipe yet: its fault stands there already
   const list = byId("add-path");

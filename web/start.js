@@ -21,7 +21,10 @@ async function listStarters() {
   }
   findStarters(); // words may stand there already
 }
-byId("begin").addEventListener("toggle", () => !byId("starters").children.length && listStarters());
+let listing = null; // under way: it may be opened again meanwhile
+byId("begin").addEventListener("toggle", () => {
+  if (!byId("starters").children.length) listing ??= listStarters().finally(() => (listing = null));
+});
 byId("find").addEventListener("input", findStarters);
 function findStarters() {
   const words = byId("find").value.toLowerCase().split(/[\s,;.]+/);

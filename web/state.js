@@ -235,6 +235,7 @@ function writeAddress() {
   due = null;
   writing = writing.then(async () => {
     const there = location.hash;
+    if (holdsRecipe(there) && there !== own) return; // it was gone to, and is about to arrive
     const address = await packed(state);
     if (address === own || location.hash !== there) return; // what was gone back to meanwhile stays
     own = address;
@@ -270,6 +271,8 @@ function isLast(steps, next) {
 // a link that was cut or altered: nothing is drawn, and the address stays until a recipe is begun
 function refuse() {
   clearTimeout(later);
+  endTyping();
+  own = location.hash;
   if (shown) noteStep(null);
   changeCount += 1;
   Object.assign(recipe, { name: "recipe", text: "", tables: {}, beside: null, fields: [], bare: null });

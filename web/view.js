@@ -9,10 +9,18 @@ const RESTING = 120; // ms that a slider that is held rests before its cam is ch
 let judgedText = ""; // of the recipe that was made or judged last
 
 async function changed() {
-  if (!byId("judged").classList.contains("older")) byId("since").textContent = recipe.text === judgedText ? "" : "The recipe has changed since.";
+  endTyping();
+  showSince();
   const turn = ++changeCount;
   await designed(recipe.name, recipe.text);
-  if (turn === changeCount) tab.dataset.answered = String(turn); // an older change may end later, when its slider has rested
+  if (turn !== changeCount) return; // an older change may end later, when its slider has rested
+  tab.dataset.answered = String(turn);
+  enterWaiting();
+}
+
+// whether what was made or judged is of another recipe than the one that stands there
+function showSince() {
+  if (!byId("judged").classList.contains("older")) byId("since").textContent = recipe.text === judgedText ? "" : "The recipe has changed since.";
 }
 
 async function designed(name, text) {
@@ -79,15 +87,16 @@ function countShown() {
 const firstScene = JSON.parse(byId("first").textContent);
 let shown = null; // the scene that stands there
 function play(scene) {
+  const arrives = scene !== shown && scene !== firstScene; // and is no other look at what stood there before
   shown = scene;
   tab.dispatchEvent(new Event("plays"));
   tab.classList.remove("empty");
   showPanels(scene.panels || "");
   const root = document.documentElement;
-  const begin = place !== null && scene !== firstScene ? { at: place, playing: false } : endPlayer
+  const begin = place !== null && arrives ? { at: place, playing: false } : endPlayer
     ? { at: Number(root.dataset.at), playing: root.dataset.playing === "true" }
     : { at: 0, playing: !window.matchMedia("(prefers-reduced-motion: reduce)").matches };
-  if (scene !== firstScene) place = null;
+  if (arrives) place = null;
   if (endPlayer) endPlayer();
   endPlayer = playScene(scene, begin);
   tab.dispatchEvent(new Event("played"));

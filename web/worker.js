@@ -52,6 +52,10 @@ self.onmessage = async ({ data }) => {
   const { python, live, gc } = await begun;
   const { id, call, input, files = {} } = data;
   try {
+    for (const name of python.FS.readdir(live.FOLDER)) {
+      const path = `${live.FOLDER}/${name}`; // of a call before: no recipe finds a table that is not its own
+      if (python.FS.isFile(python.FS.stat(path).mode)) python.FS.unlink(path);
+    }
     for (const [name, content] of Object.entries(files)) python.FS.writeFile(`${live.FOLDER}/${name}`, content);
     const output = JSON.parse(live.answer(call, JSON.stringify(input)));
     const made = (output.files || []).map((file) => ({ ...file, bytes: python.FS.readFile(file.path) }));

@@ -67,8 +67,10 @@ class _Handler(BaseHTTPRequestHandler):
             # a site whose name is made to lead here would read the page as its own
             self._answer(403, "text/plain", b"ask for 127.0.0.1\n")
         elif self.path == "/":
-            script = f"<script>\n{asset('reload.js')}</script>"
-            text = self._shown.page.replace(LOCAL, "connect-src 'self'", 1).replace(RELOAD, script, 1)
+            with self._shown.changed:
+                page, version = self._shown.page, self._shown.version
+            script = f'<script data-version="{version}">\n{asset("reload.js")}</script>'
+            text = page.replace(LOCAL, "connect-src 'self'", 1).replace(RELOAD, script, 1)
             self._answer(200, "text/html; charset=utf-8", text.encode("utf-8"))
         elif self.path == "/events":
             self._events()

@@ -39,6 +39,11 @@ _FETCHED = {"chrome", "headless_shell", "chrome-headless-shell"}
 REPLACED = ("navigated or closed", "context was destroyed", "Cannot find context", "Cannot find default execution")
 
 
+# what observes sizes hears of them behind the next frame
+SHOWN = "new Promise((done) => requestAnimationFrame(() => requestAnimationFrame(done)))"
+GONE_OVER = "Promise.allSettled(document.getAnimations().map((one) => one.finished)).then(() => true)"  # colours
+
+
 class ReplacedError(AssertionError):
     """The page that was asked is being replaced by another."""
 
@@ -149,15 +154,21 @@ class Browser:
             self.requests.append(parameters["request"]["url"])
 
     def size(self, width: int, height: int, *, dark: bool = False, mobile: bool = False) -> None:
-        """Set the size of the window and which colours are preferred."""
+        """Set the size of the window and which colours are preferred, and wait until the page has taken both."""
         self.call("Emulation.setDeviceMetricsOverride", width=width, height=height, deviceScaleFactor=1, mobile=mobile)
         scheme = {"name": "prefers-color-scheme", "value": "dark" if dark else "light"}
         self.call("Emulation.setEmulatedMedia", features=[scheme])
+        self.ask(SHOWN)
+
+    def leave(self, address: str) -> None:
+        """Go to a page from none, so that nothing of the one before is taken for its own."""
+        self.call("Page.navigate", url="about:blank")
+        self.wait("location.href === 'about:blank'")
+        self.call("Page.navigate", url=address)
 
     def open(self, address: str) -> None:
         """Open a page and wait until its script has run."""
-        self.call("Page.navigate", url="about:blank")
-        self.call("Page.navigate", url=address)
+        self.leave(address)
         self.wait("document.documentElement?.dataset.ready === 'true'")
 
     def wait(self, condition: str, patience: float = PATIENCE) -> None:

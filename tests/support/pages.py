@@ -90,6 +90,13 @@ def wait(condition: Callable[[], bool]) -> None:
         time.sleep(0.02)
 
 
+def put(path: Path, text: str) -> None:
+    """Save a file at once: a watch would take what it finds between an emptied file and its text."""
+    new = path.with_name("new")
+    new.write_text(text, encoding="utf-8")
+    new.replace(path)
+
+
 def fetched(address: str) -> str:
     with urllib.request.urlopen(address, timeout=20) as answer:
         text: str = answer.read().decode("utf-8")

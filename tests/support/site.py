@@ -5,12 +5,11 @@ from __future__ import annotations
 import json
 import posixpath
 import re
-import time
 from html.parser import HTMLParser
 from typing import TYPE_CHECKING, Any
 from urllib.parse import unquote, urlsplit
 
-from support.browser import PATIENCE
+from support.browser import SHOWN
 from support.places import script
 
 if TYPE_CHECKING:
@@ -18,6 +17,21 @@ if TYPE_CHECKING:
 
     from support.browser import Browser
 
+# Counts what its worker is asked and answers: "No results" stands there too until an answer comes.
+COUNTED = """(() => {
+  const Plain = Worker;
+  Object.assign(window, { asked: [], answered: 0 });
+  window.Worker = class extends Plain {
+    constructor(...given) {
+      super(...given);
+      this.addEventListener("message", ({ data }) => (answered += data.type === 3));
+    }
+    postMessage(message) {
+      if (message.type === 2) asked.push(JSON.stringify(message.data));
+      super.postMessage(message);
+    }
+  };
+})()"""
 ASSETS = {"src", "srcset", "poster", "data", "action"}  # what a page loads by these names, and by `href` of a link
 
 
@@ -84,25 +98,23 @@ class Search:
     def __init__(self, browser: Browser, address: str) -> None:
         self.browser = browser
         browser.size(1280, 900)
-        browser.call("Page.navigate", url=f"{address}index.html")
+        counted = browser.call("Page.addScriptToEvaluateOnNewDocument", source=COUNTED)
+        browser.leave(f"{address}index.html")
         browser.wait("!!document.querySelector('.md-search__button') && document.readyState === 'complete'")
         roots = "[...document.querySelectorAll('*')].map((one) => one.shadowRoot)"
         shadow = f"{roots}.find((root) => root?.querySelector('dialog'))"
         browser.wait(f"document.querySelector('.md-search__button').click(), !!({shadow})")
         browser.ask(f"window.sought = {shadow}, 0")
+        browser.call("Page.removeScriptToEvaluateOnNewDocument", **counted)
 
     def results(self, query: str) -> list[str]:
         """Pages that it lists for some words, best first, each with its anchor."""
         put = "Object.getOwnPropertyDescriptor(HTMLInputElement.prototype, 'value').set.call(box, text)"
         fire = "box.dispatchEvent(new Event('input', {bubbles: true}))"
         links = "[...sought.querySelectorAll('[role=listbox] a')].map((one) => one.href)"
-        told = f"[sought.querySelector('[role=status]').textContent, {links}]"
-        for text, answer in (("", r"^$"), (query, r"^(No|\d+) result")):
-            self.browser.ask(f"((box, text) => {{{put}; {fire};}})(sought.querySelector('input'), {json.dumps(text)})")
-            state, before = self.browser.ask(told), None
-            end = time.monotonic() + PATIENCE
-            while not re.match(answer, state[0]) or state != before:  # it is said, and the list is there
-                assert time.monotonic() < end, (query, state)
-                time.sleep(0.1)
-                state, before = self.browser.ask(told), state
-        return [re.sub(r"\?h=[^#]*", "", urlsplit(link)._replace(scheme="", netloc="").geturl()) for link in state[1]]
+        self.browser.ask(f"((box, text) => {{{put}; {fire};}})(sought.querySelector('input'), {json.dumps(query)})")
+        self.browser.wait(f"asked.at(-1)?.includes({json.dumps(json.dumps(query))}) && asked.length === answered")
+        self.browser.ask(SHOWN)
+        told, links = self.browser.ask(f"[sought.querySelector('[role=status]').textContent, {links}]")
+        assert re.match(r"(No|\d+) result", told), (query, told)
+        return [re.sub(r"\?h=[^#]*", "", urlsplit(link)._replace(scheme="", netloc="").geturl()) for link in links]

@@ -14,6 +14,7 @@ from typing import TYPE_CHECKING, Any
 
 from support import pyodide
 from support.browser import executable
+from support.pages import wait
 from support.places import script
 
 if TYPE_CHECKING:
@@ -33,6 +34,23 @@ RESTED = """new Promise((done) => {
   };
   look();
 })"""
+AS_OPENED = """(() => {
+  if (underWay) halting();
+  document.getElementById("other")?.remove();
+  const own = [[work, "ask"], [document, "hidden"], [history, "pushState"], [navigator.clipboard, "writeText"]];
+  for (const [one, name] of own) delete one[name];
+  recipe.beside = null;
+  [keeps, step, grip, chosen] = [true, null, null, 0];
+  if (tab.dataset.answered !== String(changeCount)) changed(); // a change that nothing answers
+  for (const id of ["begin", "add"]) byId(id).open = false;
+  byId("with-file").hidden = true;
+  for (const form of document.forms) if (form.id !== "form") form.reset();
+  for (const id of ["units", "gap", "find"]) byId(id).value = "";
+  byId("told").textContent = "";
+  tab.dispatchEvent(new Event("chosen")); // boxes go by what stands in them
+  document.activeElement.blur();
+  scrollTo({ top: 0, behavior: "instant" });
+})()"""
 
 
 def why_not() -> str:
@@ -99,6 +117,19 @@ class Tab:
         self.settle()
         return self
 
+    def as_opened(self) -> Tab:
+        """The page as it is found, whatever a test before has left: its window, its boxes, and functions of its own."""
+        self.browser.size(1280, 800)
+        self.browser.call("Emulation.setTouchEmulationEnabled", enabled=False)
+        self.ask(AS_OPENED)
+        self.wait("!underWay")
+        self.settle()
+        return self
+
+    def turn_to(self, at: float) -> None:
+        """Turn the mechanism to a place, at which it stands still."""
+        self.ask(f"byId('slider').value = {at}; byId('slider').dispatchEvent(new Event('input'))")
+
     def wait(self, condition: str) -> None:
         """Wait until an expression is true."""
         self.browser.wait(condition, PATIENCE)
@@ -141,14 +172,51 @@ class Tab:
         self.click(name)
         self.settle()
 
+    def worked(self, name: str) -> None:
+        """Press a button of what takes its time, and wait until that has ended."""
+        assert self.ask(f"byId({name!r}).click(), underWay")
+        self.wait("!underWay")
+
     def judged(self, name: str) -> None:
         """Press a button that makes or judges files, and wait for the judged page."""
         before = self.ask("Number(document.body.dataset.judged || 0)")
-        self.click(name)
-        faults = "byId('faults').textContent + byId('file-faults').textContent"
-        self.wait(f"Number(document.body.dataset.judged || 0) > {before} || {faults}")
-        told = self.ask(faults)
-        assert not told, told
+        self.worked(name)
+        faults = self.text_of("faults" if name == "make" else "file-faults")
+        assert self.ask("Number(document.body.dataset.judged || 0)") == before + 1, faults
+
+    def saved(self, name: str, path: Path) -> bytes:
+        """What a button saves under a name, which no file has yet."""
+        assert not path.exists()
+        self.worked(name)
+        assert self.text_of("busy").startswith("done in "), self.text_of("hand-told")
+        wait(path.is_file)
+        return path.read_bytes()
+
+    def copied(self) -> str:
+        """Copy the link, and give it."""
+        link: str = self.ask(
+            "new Promise((done) => {navigator.clipboard.writeText = async (text) => done(text); byId('link').click();})"
+        )
+        return link
+
+    def middle(self, element: str) -> tuple[float, float]:
+        """Middle of an element in the window, after it has come into view and nothing scrolls any more."""
+        self.ask(f"{element}.scrollIntoView({{ block: 'center', behavior: 'instant' }})")
+        self.rest()
+        box = f"{element}.getBoundingClientRect()"
+        x, y = self.ask(f"(({{ x, y, width, height }}) => [x + width / 2, y + height / 2])({box})")
+        return x, y
+
+    @contextmanager
+    def other(self, fragment: str = "") -> Iterator[str]:
+        """Open the page in a frame meanwhile, as another tab, and give its document."""
+        self.ask(f"""(() => {{
+          const other = document.createElement("iframe");
+          Object.assign(other, {{ id: "other", src: {json.dumps(f"index.html{fragment}")} }});
+          document.body.append(other);
+        }})()""")
+        yield "byId('other').contentDocument"
+        self.ask("byId('other').remove()")
 
     @property
     def text(self) -> str:

@@ -48,11 +48,22 @@ def opened(address: str, profile: Path) -> Iterator[tab.Tab]:
 
 
 @pytest.fixture(scope="package")
-def page(address: str, tmp_path_factory: pytest.TempPathFactory) -> Iterator[tab.Tab]:
+def one_page(address: str, tmp_path_factory: pytest.TempPathFactory) -> Iterator[tab.Tab]:
     yield from opened(address, tmp_path_factory.mktemp("profile"))
 
 
 @pytest.fixture(scope="package")
-def other_page(address: str, tmp_path_factory: pytest.TempPathFactory) -> Iterator[tab.Tab]:
-    """The page in another browser, for tests that take many steps: the history of one keeps fifty."""
+def another_page(address: str, tmp_path_factory: pytest.TempPathFactory) -> Iterator[tab.Tab]:
     yield from opened(address, tmp_path_factory.mktemp("profile"))
+
+
+@pytest.fixture
+def page(one_page: tab.Tab) -> tab.Tab:
+    """The page, whatever tests have done with it."""
+    return one_page.as_opened()
+
+
+@pytest.fixture
+def other_page(another_page: tab.Tab) -> tab.Tab:
+    """The page in another browser, for tests that take many steps: the history of one keeps fifty."""
+    return another_page.as_opened()

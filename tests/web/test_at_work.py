@@ -42,29 +42,24 @@ WATCHED = f"""((id) => {{
 def test_status_progress_and_stop_stand_at_the_button(page: tab.Tab, tmp_path: Path) -> None:
     text = starter("disc-roller")
     report = camgeo.export(camgeo.load(text), tmp_path, only=["dxf"])
-    try:
-        page.load("disc-roller", text)
-        page.drop("cam.dxf", (report.path / "recipe.dxf").read_bytes())
-        page.wait("!byId('with-file').hidden")
-        for name, words, width in (("verify", "judging", 1280), ("follow", "following", 390)):
-            page.browser.size(width, 800)
-            page.rest()  # else scrolling that goes on takes the button out of view
-            page.ask(f"{WATCHED}('{name}')")
-            page.wait("window.seen !== null")
-            there, looks, told = page.ask("window.seen")
-            assert there
-            assert "older" in looks
-            assert told.startswith(words)
-            page.wait("!underWay")
-            assert "done in" in page.text_of("busy")
-            assert page.ask("byId('judged').className") == "tables"
-            assert page.text_of("since") == ""
-        # pressed at once, as it may be done before a test presses the other
-        since = page.ask("byId('follow').click(), [byId('since').textContent, byId('stop').click()][0]")
-        assert "of the run before" in since
-        page.wait("byId('busy').textContent === 'stopped'")
-        assert "of a run before" in page.text_of("since")
-        assert "older" in page.ask("byId('judged').className")
-        page.settle()
-    finally:
-        page.browser.size(1280, 800)
+    page.load("disc-roller", text)
+    page.drop("cam.dxf", (report.path / "recipe.dxf").read_bytes())
+    for name, words, width in (("verify", "judging", 1280), ("follow", "following", 390)):
+        page.browser.size(width, 800)
+        page.rest()  # else scrolling that goes on takes the button out of view
+        page.ask(f"{WATCHED}('{name}')")
+        page.wait("window.seen !== null")
+        there, looks, told = page.ask("window.seen")
+        assert there
+        assert "older" in looks
+        assert told.startswith(words)
+        page.wait("!underWay")
+        assert "done in" in page.text_of("busy")
+        assert page.ask("byId('judged').className") == "tables"
+        assert page.text_of("since") == ""
+    # pressed at once, as it may be done before a test presses the other
+    since = page.ask("byId('follow').click(), [byId('since').textContent, byId('stop').click()][0]")
+    assert "of the run before" in since
+    page.wait("byId('busy').textContent === 'stopped'")
+    assert "of a run before" in page.text_of("since")
+    assert "older" in page.ask("byId('judged').className")

@@ -54,29 +54,45 @@ def test_a_number_that_is_corrected_leaves_its_partner_as_it_was(page: tab.Tab) 
     assert "{dwell: 60}" in page.text
 
 
+def test_what_is_entered_while_the_text_is_read_is_entered_behind_that(page: tab.Tab) -> None:
+    page.load("disc-roller", TEXT)
+    for box, given, wanted in (
+        ('[data-path="cam.base_radius"] .box', "value = '37'", "base_radius: 37 "),
+        ('[data-path="cam.motion[0].law"] select', "value = 'cycloidal'", "over: 110, law: cycloidal}"),
+        ('[data-path="export.files"] [value="3mf"]', "checked = true", "html, 3mf]"),
+        ("#segment-law", "value = 'harmonic'", "over: 110, law: harmonic}"),
+    ):
+        page.ask(f"""(() => {{
+          const box = document.querySelector({box!r});
+          put(snapshot());
+          box.{given};
+          box.dispatchEvent(new Event("change"));
+        }})()""")
+        page.settle()
+        assert wanted in page.text
+    assert page.browser.problems == []
+
+
 @pytest.mark.parametrize("width", [390, 1280])
 def test_a_fault_stands_at_its_box_and_in_view(page: tab.Tab, width: int) -> None:
     page.browser.size(width, 800)
-    try:
-        page.load("disc-roller", TEXT)
-        for path, value, told in (
-            ("cam.base_radius", "-1", "not above 0, given -1"),
-            ("cam.motion[0].over", "250", "the segments do not fill their angle"),
-            ("cam.motion[2].return", "x", "not a number"),
-        ):
-            page.ask(f"document.querySelector('[data-path=\"{path}\"] .box').focus()")
-            page.enter(path, value)
-            assert page.ask(INVALID) == path
-            assert told in page.ask("document.querySelector('#form .fault').textContent")
-            assert page.ask(
-                "document.querySelector('#form [aria-invalid]').getAttribute('aria-describedby')"
-            ) == page.ask("document.querySelector('#form .fault').id")
-            assert page.ask(IN_VIEW) == "fault"
-            page.press("undo")
-        assert page.ask(INVALID) == ""
-        assert page.ask("document.querySelectorAll('.fault').length") == 0
-        page.write(TEXT.replace("rise: 20", "rise: 15"))  # in the text nothing moves along
-        assert "the lift jumps from 0 to 5 mm" in page.text_of("form")
-        assert page.ask(INVALID) == "cam.motion[0].rise"
-    finally:
-        page.browser.size(1280, 800)
+    page.load("disc-roller", TEXT)
+    for path, value, told in (
+        ("cam.base_radius", "-1", "not above 0, given -1"),
+        ("cam.motion[0].over", "250", "the segments do not fill their angle"),
+        ("cam.motion[2].return", "x", "not a number"),
+    ):
+        page.ask(f"document.querySelector('[data-path=\"{path}\"] .box').focus()")
+        page.enter(path, value)
+        assert page.ask(INVALID) == path
+        assert told in page.ask("document.querySelector('#form .fault').textContent")
+        assert page.ask("document.querySelector('#form [aria-invalid]').getAttribute('aria-describedby')") == page.ask(
+            "document.querySelector('#form .fault').id"
+        )
+        assert page.ask(IN_VIEW) == "fault"
+        page.press("undo")
+    assert page.ask(INVALID) == ""
+    assert page.ask("document.querySelectorAll('.fault').length") == 0
+    page.write(TEXT.replace("rise: 20", "rise: 15"))  # in the text nothing moves along
+    assert "the lift jumps from 0 to 5 mm" in page.text_of("form")
+    assert page.ask(INVALID) == "cam.motion[0].rise"

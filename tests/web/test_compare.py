@@ -2,17 +2,12 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
-
 import numpy as np
 import pytest
 from support import tab
 
 import camgeo
 from camgeo.recipe.starter import starter
-
-if TYPE_CHECKING:
-    from collections.abc import Iterator
 
 pytestmark = [pytest.mark.slow, pytest.mark.skipif(bool(tab.why_not()), reason=tab.why_not())]
 
@@ -25,16 +20,11 @@ WIDE = """(() => {
 
 
 @pytest.fixture
-def desk(other_page: tab.Tab) -> Iterator[tab.Tab]:
-    """The page with a cam that stands still at 0, with none kept before and afterwards."""
-    page = other_page
-    page.ask("document.documentElement.dataset.playing === 'true' && byId('play').click()")
-    page.load("first", DISC)
-    page.ask("byId('slider').value = 0; byId('slider').dispatchEvent(new Event('input'))")
-    yield page
-    page.ask("recipe.beside = null; changed()")
-    page.settle()
-    page.browser.size(1280, 800)
+def desk(other_page: tab.Tab) -> tab.Tab:
+    """The page with a cam that stands still at 0, with none kept."""
+    other_page.load("first", DISC)
+    other_page.turn_to(0)
+    return other_page
 
 
 def keep(page: tab.Tab) -> None:
@@ -85,7 +75,7 @@ def test_a_kept_design_turns_along(desk: tab.Tab) -> None:
     place = "document.querySelectorAll('#drawing .kept > g')[{}].getAttribute('transform')"
     count = desk.ask("document.querySelectorAll('#drawing .kept > g').length")
     still = [desk.ask(place.format(i)) for i in range(count)]
-    desk.ask("byId('slider').value = 110; byId('slider').dispatchEvent(new Event('input'))")
+    desk.turn_to(110)
     turned = [desk.ask(place.format(i)) for i in range(count)]
     assert sum(a != b for a, b in zip(still, turned, strict=True)) >= 2  # the cam and its follower
     assert sum("rotate(110.0" in one or "rotate(-110.0" in one for one in turned) == 1
@@ -95,25 +85,15 @@ def test_a_link_carries_the_kept_design_to_another_tab(desk: tab.Tab) -> None:
     keep(desk)
     desk.load("second", DISC.replace("base_radius: 36", "base_radius: 44"))
     assert desk.text_of("beside-name") == "first"  # it stays beside another recipe
-    desk.ask("navigator.clipboard.writeText = async (text) => { window.copied = text; }")
-    desk.click("link")
-    desk.wait("byId('told').textContent.includes('link')")
+    link = desk.copied()
     assert "and the kept design" in desk.text_of("told")
-    link = desk.ask("window.copied")
-    desk.ask(f"""(() => {{
-      const other = document.createElement("iframe");
-      other.id = "other";
-      other.src = "index.html" + {link[link.index("#") :]!r};
-      document.body.append(other);
-    }})()""")
-    there = "byId('other').contentDocument"
-    desk.wait(f"{there}?.querySelector('#drawing .kept') && !{there}.getElementById('beside').hidden")
-    told = desk.ask(
-        f"[{there}.getElementById('beside-name'), {there}.getElementById('name')].map((one) => one.textContent)"
-    )
-    assert told == ["first", "second"]
-    assert "base_radius: 44" in desk.ask(f"{there}.getElementById('text').value")
-    desk.ask("byId('other').remove()")
+    with desk.other(link[link.index("#") :]) as there:
+        desk.wait(f"{there}?.querySelector('#drawing .kept') && !{there}.getElementById('beside').hidden")
+        told = desk.ask(
+            f"[{there}.getElementById('beside-name'), {there}.getElementById('name')].map((one) => one.textContent)"
+        )
+        assert told == ["first", "second"]
+        assert "base_radius: 44" in desk.ask(f"{there}.getElementById('text').value")
 
 
 def test_a_reload_keeps_it_and_a_step_back_takes_it_away(desk: tab.Tab) -> None:

@@ -3,16 +3,13 @@
 from __future__ import annotations
 
 import re
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import pytest
 from support import tab
 
 import camgeo
 from camgeo.recipe.starter import starter
-
-if TYPE_CHECKING:
-    from collections.abc import Iterator
 
 pytestmark = [pytest.mark.slow, pytest.mark.skipif(bool(tab.why_not()), reason=tab.why_not())]
 
@@ -33,14 +30,11 @@ PEAKS = PEAKS.replace("{dwell: 80}", "{dwell: 30}\n    - {dwell: 20}\n    - {to:
 
 
 @pytest.fixture
-def desk(other_page: tab.Tab) -> Iterator[tab.Tab]:
-    """The page with a cam that stands still, wide again afterwards."""
-    page = other_page
-    page.ask("document.documentElement.dataset.playing === 'true' && byId('play').click()")
-    page.load("disc-roller", DISC)
-    yield page
-    page.browser.size(1280, 800)
-    page.browser.call("Emulation.setTouchEmulationEnabled", enabled=False)
+def desk(other_page: tab.Tab) -> tab.Tab:
+    """The page with a cam that stands still at 0."""
+    other_page.turn_to(0)
+    other_page.load("disc-roller", DISC)
+    return other_page
 
 
 def segments(text: str) -> list[str]:
@@ -51,10 +45,7 @@ def segments(text: str) -> list[str]:
 
 def place(page: tab.Tab, joint: int) -> tuple[float, float]:
     """Middle of a joint's handle in the window, after it has come into view."""
-    handle = f"document.querySelector('[data-joint=\"{joint}\"]')"
-    page.ask(f"{handle}.scrollIntoView({{ block: 'center', behavior: 'instant' }})")
-    x, y = page.ask(f"(({{x, y, width, height}}) => [x + width / 2, y + height / 2])({handle}.getBoundingClientRect())")
-    return x, y
+    return page.middle(f"document.querySelector('[data-joint=\"{joint}\"]')")
 
 
 def labels(page: tab.Tab) -> list[str]:
@@ -305,7 +296,7 @@ def test_what_is_done_to_a_segment_is_one_step_each(desk: tab.Tab) -> None:
         assert desk.text_of("draw-told") == ""
         assert len(segments(desk.text)) == count
         assert desk.text_of("verdict").startswith("every check of the design holds")
-    desk.ask("document.getElementById('slider').value = 300; byId('slider').dispatchEvent(new Event('input'))")
+    desk.turn_to(300)
     desk.press("add-joint")
     assert len(segments(desk.text)) == 7
     assert desk.ask("recipe.done.length") == steps + 5

@@ -56,8 +56,7 @@ def browser(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Browser]:
 
 def listed(browser: Browser, address: str) -> None:
     """Open the page of examples."""
-    browser.call("Page.navigate", url="about:blank")
-    browser.call("Page.navigate", url=f"{address}examples.html")
+    browser.leave(f"{address}examples.html")
     browser.wait("document.readyState === 'complete' && document.querySelectorAll('#gallery a').length > 0")
 
 
@@ -79,12 +78,10 @@ def test_cards_are_in_reach_and_on_a_phone_one_opens_by_a_finger(browser: Browse
         return
     wanted = held(links[0])
     card = "document.querySelectorAll('#lecture a')[0]"
-    browser.ask(f"{card}.scrollIntoView({{ block: 'center', behavior: 'instant' }})")
-    x, y = browser.ask(f"(({{x, y}}) => [x + 30, y + 30])({card}.getBoundingClientRect())")
-    browser.call("Emulation.setTouchEmulationEnabled", enabled=True)
-    browser.touch([(x, y)])
-    browser.call("Emulation.setTouchEmulationEnabled", enabled=False)
     page = tab.Tab(browser, address)
+    browser.call("Emulation.setTouchEmulationEnabled", enabled=True)
+    browser.touch([page.middle(card)])
+    browser.call("Emulation.setTouchEmulationEnabled", enabled=False)
     page.wait("document.body?.dataset.loaded && !byId('beside').hidden")
     page.settle()
     assert page.text_of("name") == wanted[0]

@@ -11,14 +11,12 @@ import numpy as np
 import pytest
 from PIL import Image, ImageSequence
 from support import tab
-from support.pages import wait
 from support.places import RECIPES
 
 import camgeo
 from camgeo.recipe.starter import starter
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator
     from pathlib import Path
 
 pytestmark = [pytest.mark.slow, pytest.mark.skipif(bool(tab.why_not()), reason=tab.why_not())]
@@ -27,29 +25,24 @@ DISC = starter("disc-roller").replace("[dxf, svg, stl, csv, html]", "[dxf]")
 
 
 @pytest.fixture
-def desk(other_page: tab.Tab, tmp_path: Path) -> Iterator[tab.Tab]:
+def desk(other_page: tab.Tab, tmp_path: Path) -> tab.Tab:
     """The page with a cam whose files are made, which stands still; what it saves goes into a folder of the test."""
     page = other_page
     page.browser.call("Page.setDownloadBehavior", behavior="allow", downloadPath=str(tmp_path))
-    page.ask("document.documentElement.dataset.playing === 'true' && byId('play').click()")
+    page.turn_to(0)
     page.load("disc", DISC)
     page.judged("make")
-    yield page
-    page.browser.size(1280, 800)
+    return page
 
 
 def saved(page: tab.Tab, button: str, path: Path) -> bytes:
-    """What a button saves under a name."""
-    page.click(button)
-    wait(path.is_file)
-    page.wait("!document.body.classList.contains('working')")
-    assert page.text_of("busy").startswith("done in ")
-    assert page.text_of("hand-told") == ""
+    """What a button saves under a name, which stands once among the files then."""
+    data = page.saved(button, path)
     name = path.name
     assert (
         page.ask(f"[...document.querySelectorAll('#files a')].filter((one) => one.download === {name!r}).length") == 1
     )
-    return path.read_bytes()
+    return data
 
 
 def test_all_files_come_as_a_zip_with_the_recipe_and_its_tables(desk: tab.Tab, tmp_path: Path) -> None:
@@ -57,14 +50,15 @@ def test_all_files_come_as_a_zip_with_the_recipe_and_its_tables(desk: tab.Tab, t
     table = (RECIPES / "disc-table.csv").read_text("utf-8")
     desk.load("mine", text, {"disc-table.csv": table, "other.csv": "0 1"})
     desk.judged("make")
-    saved(desk, "zip", tmp_path / "mine.zip")
+    data = saved(desk, "zip", tmp_path / "mine.zip")
     with ZipFile(tmp_path / "mine.zip") as archive:
         names = {name.removeprefix("mine/") for name in archive.namelist()}
         archive.extractall(tmp_path)
     shown = desk.ask("[...document.querySelectorAll('#files a')].map((one) => one.download)")
     assert names == {*shown, "mine.yaml", "disc-table.csv"} - {"mine.zip"}
     assert camgeo.verify(tmp_path / "mine" / "mine.yaml", tmp_path / "mine" / "mine.dxf").ok
-    saved(desk, "zip", tmp_path / "mine.zip")  # again: it does not hold itself
+    (tmp_path / "mine.zip").unlink()
+    assert saved(desk, "zip", tmp_path / "mine.zip") == data  # again: it does not hold itself
     assert desk.browser.problems == []
 
 
@@ -74,7 +68,6 @@ def test_of_a_file_that_was_judged_nothing_is_handed_over(desk: tab.Tab) -> None
         "made.files.find(({ name }) => name.endsWith('.dxf')).bytes.reduce((a, b) => a + String.fromCharCode(b), '')"
     )
     desk.drop("cam.dxf", held.encode("latin-1"))
-    desk.wait("byId('chosen').textContent === 'cam.dxf'")
     desk.judged("verify")
     assert desk.ask("byId('hand').hidden") is True
 
@@ -85,8 +78,7 @@ def test_the_drawing_comes_as_a_pdf_unless_a_check_fails(desk: tab.Tab, tmp_path
     assert data.count(b"\nh\nS") == 2  # the contour and the bore
     desk.load("long", DISC.replace("base_radius: 36", "base_radius: 1800"))
     desk.judged("make")
-    desk.click("pdf")
-    desk.wait("byId('hand-told').textContent")
+    desk.worked("pdf")
     assert "sheets, and 60 are the most; take the DXF" in desk.text_of("hand-told")
     desk.load("failed", f"{DISC}limits: {{size: {{at_most: 20}}}}\n")
     desk.judged("make")
@@ -95,7 +87,7 @@ def test_the_drawing_comes_as_a_pdf_unless_a_check_fails(desk: tab.Tab, tmp_path
 
 
 def test_a_film_of_the_drawing_is_an_endless_gif_of_one_turn(desk: tab.Tab, tmp_path: Path) -> None:
-    desk.ask("byId('slider').value = 33; byId('slider').dispatchEvent(new Event('input'))")
+    desk.turn_to(33)
     data = saved(desk, "gif", tmp_path / "disc.gif")
     assert desk.ask("[Number(document.documentElement.dataset.at), document.documentElement.dataset.playing]") == [
         33,
@@ -148,10 +140,19 @@ def test_a_film_of_many_colours_is_packed_as_it_was(desk: tab.Tab) -> None:
 def test_a_film_that_is_stopped_leaves_the_page_at_work(desk: tab.Tab) -> None:
     worker = desk.ask("(window.workerBefore = work.worker, 1)")
     assert worker == 1
-    desk.click("gif")
-    desk.wait("byId('busy').textContent.includes('picture 2 of 72')")
-    desk.click("stop")
-    desk.wait("byId('busy').textContent === 'stopped'")
+    desk.ask("""new Promise((done) => {
+      const watch = new MutationObserver(() => {
+        if (!byId("busy").textContent.includes("picture 2 of 72")) return;
+        watch.disconnect();
+        byId("stop").click();
+        byId("gif").click(); // which does not take the stop back
+        done();
+      });
+      watch.observe(byId("busy"), { childList: true });
+      byId("gif").click();
+    })""")
+    desk.wait("!underWay")
+    assert desk.text_of("busy") == "stopped"
     assert desk.ask("work.worker === window.workerBefore && work.ready") is True  # Python stays
     assert desk.ask("[...document.querySelectorAll('#files a')].some((one) => one.download.endsWith('.gif'))") is False
 
@@ -187,8 +188,8 @@ INK = """(() => {
 @pytest.mark.parametrize("width", [390, 1280])
 def test_the_solid_is_shown_from_above_as_large_as_it_is_and_turned(desk: tab.Tab, width: int) -> None:
     desk.browser.size(width, 844)
-    desk.click("solid")
-    desk.wait("!byId('solid-figure').hidden")
+    desk.worked("solid")
+    assert desk.ask("byId('solid-figure').hidden") is False
     contour = camgeo.design(camgeo.load(DISC)).contour(5000)
     sides = [float(side) for side in np.ptp(contour, axis=0)]
     told = [float(part) for part in re.findall(r"[\d.]+", desk.text_of("solid-size").split(" mm")[0])]
@@ -209,11 +210,7 @@ def test_the_solid_is_shown_from_above_as_large_as_it_is_and_turned(desk: tab.Ta
     assert desk.ask(INK)[3] != before
     assert desk.ask("document.documentElement.dataset.at") == at  # the shaft stays
     spin = desk.ask("solid.spin")
-    desk.ask("byId('solid-view').scrollIntoView({ block: 'center', behavior: 'instant' })")
-    middle = (
-        "(({ x, y, width, height }) => [x + width / 2, y + height / 2])(byId('solid-view').getBoundingClientRect())"
-    )
-    x0, y0 = desk.ask(middle)
+    x0, y0 = desk.middle("byId('solid-view')")
     desk.browser.drag([(x0, y0), (x0 + 30, y0), (x0 + 60, y0 + 10)])
     assert desk.ask("solid.spin") > spin + 0.3
     assert desk.ask("document.documentElement.scrollWidth") <= width
@@ -228,7 +225,6 @@ def test_where_there_is_no_webgl_or_no_solid_the_page_says_so(desk: tab.Tab) -> 
     desk.load("thin", re.sub(r"(?m)^.*thickness: 8.*\n", "", DISC))
     assert desk.text_of("faults") == ""
     desk.judged("make")
-    desk.click("solid")
-    desk.wait("byId('hand-told').textContent")
+    desk.worked("solid")
     assert "a solid needs a thickness" in desk.text_of("hand-told")
     assert desk.ask("byId('solid-figure').hidden") is True

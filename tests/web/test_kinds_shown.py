@@ -11,14 +11,12 @@ import numpy as np
 import pytest
 from PIL import Image, ImageSequence
 from support import tab
-from support.pages import wait
-from support.places import RECIPES
+from support.places import RECIPES, script
 
 from camgeo.api.root import root_of
 from camgeo.recipe.loading import load_order_text
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator
     from pathlib import Path
 
 pytestmark = [pytest.mark.slow, pytest.mark.skipif(bool(tab.why_not()), reason=tab.why_not())]
@@ -29,18 +27,10 @@ def shipped(name: str) -> str:
 
 
 @pytest.fixture
-def desk(other_page: tab.Tab) -> Iterator[tab.Tab]:
-    """The page with a cam that stands still, wide again afterwards."""
-    page = other_page
-    page.ask("document.documentElement.dataset.playing === 'true' && byId('play').click()")
-    yield page
-    page.ask("recipe.beside = null")
-    page.browser.size(1280, 800)
-    page.browser.call("Emulation.setTouchEmulationEnabled", enabled=False)
-
-
-def turn_to(page: tab.Tab, at: float) -> None:
-    page.ask(f"byId('slider').value = {at}; byId('slider').dispatchEvent(new Event('input'))")
+def desk(other_page: tab.Tab) -> tab.Tab:
+    """The page with a cam that stands still at 0."""
+    other_page.turn_to(0)
+    return other_page
 
 
 def place(page: tab.Tab, body: str) -> list[float]:
@@ -59,13 +49,12 @@ def test_a_plate_slides_and_its_joint_is_moved_by_a_finger(desk: tab.Tab, width:
     desk.browser.size(width, 844)
     desk.load("feed", shipped("linear/plate-feed"))
     assert desk.text_of("verdict") == "every check of the design holds"
-    turn_to(desk, 100.0)
+    desk.turn_to(100.0)
     assert place(desk, ".cam")[:2] == pytest.approx([-100.0, 0.0])
     assert "lift 20.00 mm" in desk.text_of("now")
     desk.browser.call("Emulation.setTouchEmulationEnabled", enabled=True)
     handle = "document.querySelector('[data-joint=\"1\"]')"
-    desk.ask(f"{handle}.scrollIntoView({{ block: 'center', behavior: 'instant' }})")
-    x, y = desk.ask(f"(({{x, y, width, height}}) => [x + width / 2, y + height / 2])({handle}.getBoundingClientRect())")
+    x, y = desk.middle(handle)
     across = desk.ask("frame().width") / 200.0
     desk.browser.touch([(x, y), (x + 4 * across, y), (x + 10 * across, y)])
     desk.settle()
@@ -93,14 +82,14 @@ def test_a_plate_slides_and_its_joint_is_moved_by_a_finger(desk: tab.Tab, width:
 def test_a_drum_turns_and_is_unrolled_beside(desk: tab.Tab) -> None:
     text = shipped("cylindrical/drum-groove")
     desk.load("drum", text)
-    turn_to(desk, 75.0)
+    desk.turn_to(75.0)
     blank = desk.ask("[...document.querySelectorAll('#drawing .drum path')].at(-1).getAttribute('d')")
     still = root_of(recipe := load_order_text(text, "drum.yaml")).shown(recipe).still(75.0)
     (drawn,) = re.findall(r'd="([^"]+)"><title>blank</title>', still)
     np.testing.assert_allclose(numbers(blank), numbers(drawn), atol=0.02)
     places = []
     for at in (0.0, 75.0):
-        turn_to(desk, at)
+        desk.turn_to(at)
         rolled = desk.ask("document.querySelectorAll('#development .roller-at')[1].getAttribute('transform')")
         places.append([float(part) for part in re.findall(r"[\d.]+", rolled)])
     (x0, y0), (x, y) = places
@@ -127,20 +116,18 @@ def test_a_drum_is_made_judged_and_its_solid_shown_where_it_is_late_unrolled(des
     files = desk.ask("[...document.querySelectorAll('#files a')].map((one) => one.download)")
     assert {"drum.stl", "drum.3mf", "drum.dxf", "drum.csv", "report.json"} <= {*files}
     desk.ask("""work.ask = ((ask) => async function (call, ...rest) {
-      if (call === "solid") await new Promise((done) => setTimeout(done, 2600));
+      if (call === "solid") await new Promise((done) => (window.goOn = done));
       return ask.call(this, call, ...rest);
     })(work.ask)""")
     desk.click("solid")
     desk.wait("!byId('solid-meanwhile').hidden")
     assert desk.ask("byId('solid-unrolled').querySelectorAll('.line').length") >= 2
     assert desk.ask("document.querySelectorAll('#development').length") == 1
+    desk.ask("goOn()")
     desk.wait("!byId('solid-figure').hidden")
     assert desk.ask("byId('solid-meanwhile').hidden")
     assert desk.text_of("solid-size").startswith("80 × 80 × ")
-    desk.ask("delete work.ask")
-    desk.click("pdf")
-    wait((tmp_path / "drum.pdf").is_file)
-    assert b"unrolled at a radius of 40 mm" in (tmp_path / "drum.pdf").read_bytes()
+    assert b"unrolled at a radius of 40 mm" in desk.saved("pdf", tmp_path / "drum.pdf")
     assert desk.browser.problems == []
 
 
@@ -149,8 +136,7 @@ def test_a_plate_is_made_and_its_judged_page_is_let_in(desk: tab.Tab) -> None:
     desk.load("groove", shipped("linear/plate-groove").replace("files: [dxf, stl, html]", "files: [dxf, stl]"))
     desk.judged("make")
     assert "groove.stl cannot be made in a browser" in desk.text_of("outcome")
-    desk.click("solid")
-    desk.wait("byId('hand-told').textContent")
+    desk.worked("solid")
     assert "manifold3d" in desk.text_of("hand-told")  # cuts the groove
     desk.load(
         "rack",
@@ -159,8 +145,7 @@ def test_a_plate_is_made_and_its_judged_page_is_let_in(desk: tab.Tab) -> None:
         ),
     )
     desk.judged("make")
-    desk.click("solid")
-    desk.wait("!byId('solid-figure').hidden")
+    desk.worked("solid")
     assert desk.text_of("solid-size").startswith("75 × 18 × 8 mm")  # three waves, 15 and 3 high
     assert desk.browser.problems == []
 
@@ -176,7 +161,7 @@ def test_a_kept_drum_turns_along_in_its_own_size(desk: tab.Tab) -> None:
     assert desk.ask(wide.format(".kept")) == pytest.approx(80.0, abs=0.01)
     assert desk.ask(wide.format(".drum")) == pytest.approx(88.0, abs=0.01)
     before = desk.ask("document.querySelector('#drawing .kept .metal').getAttribute('d')")
-    turn_to(desk, 45.0)
+    desk.turn_to(45.0)
     assert desk.ask("document.querySelector('#drawing .kept .metal').getAttribute('d')") != before
     assert desk.ask("document.querySelectorAll('.plot .line.kept').length") >= 4
 
@@ -189,7 +174,7 @@ def test_a_kept_plate_stands_at_the_same_travel_and_its_curves_too(desk: tab.Tab
     desk.wait("document.querySelector('#drawing .kept') !== null")
     desk.enter("cam.motion[0].dwell", "115")
     assert desk.ask("shown.input.most") == 300
-    turn_to(desk, 150.0)
+    desk.turn_to(150.0)
     plates = desk.ask(
         "[...document.querySelectorAll('#drawing .kept > g')].map((one) => one.getAttribute('transform'))"
     )
@@ -203,15 +188,24 @@ def test_a_kept_plate_stands_at_the_same_travel_and_its_curves_too(desk: tab.Tab
     desk.press("unkeep")
 
 
+# needs: linear
+def test_a_link_stands_at_its_place_though_the_plate_before_it_was_shorter(desk: tab.Tab) -> None:
+    disc = shipped("disc-roller")
+    link = script("build").link_to("disc", disc, ("kept", disc), 300.0)
+    desk.load("feed", shipped("linear/plate-feed"))  # of 200 mm
+    desk.ask(f"location.hash = {link[link.index('#') :]!r}")
+    desk.wait("recipe.name === 'disc'")
+    desk.settle()
+    assert desk.ask("Number(document.documentElement.dataset.at)") == 300.0
+
+
 # needs: cylindrical
 def test_a_film_of_a_drum_turns_it(desk: tab.Tab, tmp_path: Path) -> None:
     desk.browser.call("Page.setDownloadBehavior", behavior="allow", downloadPath=str(tmp_path))
     text = shipped("cylindrical/drum-end").replace("[stl, 3mf, ", "[").replace(", {csv: {as: flank}}", "")
     desk.load("film", text)
     desk.judged("make")
-    desk.click("gif")
-    wait((tmp_path / "film.gif").is_file)
-    film = Image.open(io.BytesIO((tmp_path / "film.gif").read_bytes()))
+    film = Image.open(io.BytesIO(desk.saved("gif", tmp_path / "film.gif")))
     pictures = [np.asarray(one.convert("RGB")).astype(int) for one in ImageSequence.Iterator(film)]
     metal = "getComputedStyle(document.querySelector('#drawing .drum .metal')).fill"
     colour = [int(part) for part in re.findall(r"\d+", desk.ask(metal))]
@@ -229,7 +223,7 @@ def test_an_indexing_cam_advances_its_turret(desk: tab.Tab, name: str, at: float
     text = shipped(f"indexing/{name}")
     desk.load("dial", text)
     assert desk.text_of("verdict") == "every check of the design holds"
-    turn_to(desk, at)
+    desk.turn_to(at)
     rib = desk.ask("[...document.querySelectorAll('#drawing .indexer path')].at(-1).getAttribute('d')")
     still = root_of(recipe := load_order_text(text, "dial.yaml")).shown(recipe).still(at)
     (drawn,) = re.findall(r'd="([^"]+)"><title>rib</title>', still)
@@ -265,7 +259,7 @@ def test_rollers_of_a_dial_run_along_its_development(desk: tab.Tab) -> None:
     desk.load("dial", shipped("indexing/index-barrel"))
     scale = 364.0 / (100.0 * math.pi)
     for at in (180.0, 270.0):
-        turn_to(desk, at)
+        desk.turn_to(at)
         told = desk.ask(
             "[...document.querySelectorAll('#development .roller-at')].map((one) => one.getAttribute('transform'))"
         )
@@ -285,8 +279,7 @@ def test_an_indexing_cam_is_made_judged_compared_and_filmed(desk: tab.Tab, tmp_p
     assert "ok" in desk.text_of("outcome")
     files = desk.ask("[...document.querySelectorAll('#files a')].map((one) => one.download)")
     assert {"globoid.stl", "globoid.csv", "report.json"} <= {*files}
-    desk.click("solid")
-    desk.wait("!byId('solid-figure').hidden")
+    desk.worked("solid")
     # 2 (100 - sqrt(60^2 - 36^2)) = 104 mm, where no track cuts the rim
     assert re.match(r"[\d.]+ × 104 × 72 mm", desk.text_of("solid-size"))
     desk.press("keep")
@@ -296,12 +289,10 @@ def test_an_indexing_cam_is_made_judged_compared_and_filmed(desk: tab.Tab, tmp_p
     assert desk.ask(tall.format(".kept")) == pytest.approx(72.0, abs=0.01)
     assert desk.ask(tall.format(".indexer")) == pytest.approx(66.0, abs=0.01)
     before = desk.ask("document.querySelector('#drawing .kept .metal').getAttribute('d')")
-    turn_to(desk, 200.0)
+    desk.turn_to(200.0)
     assert desk.ask("document.querySelector('#drawing .kept .metal').getAttribute('d')") != before
     desk.press("unkeep")
-    desk.click("gif")
-    wait((tmp_path / "globoid.gif").is_file)
-    film = Image.open(io.BytesIO((tmp_path / "globoid.gif").read_bytes()))
+    film = Image.open(io.BytesIO(desk.saved("gif", tmp_path / "globoid.gif")))
     pictures = [np.asarray(one.convert("RGB")).astype(int) for one in ImageSequence.Iterator(film)]
     moved = [int((np.abs(one - pictures[0]).sum(axis=2) > 30).sum()) for one in pictures]
     assert max(moved) > 1000
@@ -333,7 +324,6 @@ def test_what_is_not_seen_or_shall_not_move_stands_still(desk: tab.Tab) -> None:
     before = desk.ask(at)
     desk.ask(rest)
     assert desk.ask(at) == before
-    desk.browser.call("Emulation.setEmulatedMedia", features=[])
 
 
 def test_a_kind_is_chosen_among_the_starters(desk: tab.Tab) -> None:

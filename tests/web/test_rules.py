@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 import pytest
 from support import pyodide, tab
-from support.browser import Browser
+from support.browser import GONE_OVER, Browser
 
 import camgeo
 from camgeo.recipe.starter import starter
@@ -32,31 +32,26 @@ def test_no_rule_fails_on_the_judged_page(tmp_path: Path, tmp_path_factory: pyte
         for width in (390, 1280):
             for dark in (False, True):
                 browser.size(width, 844, dark=dark)
-                browser.ask("new Promise((done) => setTimeout(done, 400))")  # colours go over
+                browser.ask(GONE_OVER)
                 assert json.loads(browser.ask(FAILING)) == []
 
 
 def test_no_rule_fails_open_or_shut_with_a_fault_or_without(page: tab.Tab) -> None:
     page.load("disc-roller", starter("disc-roller"))
     page.ask(f"{AXE.read_text('utf-8')};1")
-    page.click("play")
+    page.turn_to(0)
     page.press("keep")
-    page.wait("!byId('beside').hidden")
+    assert page.ask("byId('beside').hidden") is False
     page.judged("make")
-    page.click("solid")
-    page.wait("!byId('solid-figure').hidden")
-    try:
-        for opened, over in ((False, "110"), (True, "250")):
-            page.ask(f"for (const id of ['begin', 'add']) byId(id).open = {json.dumps(opened)}")
-            page.ask(f"byId('with-file').hidden = {json.dumps(not opened)}")
-            page.wait(f"{json.dumps(not opened)} || byId('starters').children.length > 9")
-            page.enter("cam.motion[0].over", over)
-            for width in (390, 1280):
-                for dark in (False, True):
-                    page.browser.size(width, 844, dark=dark)
-                    page.ask("new Promise((done) => setTimeout(done, 400))")  # colours go over
-                    assert json.loads(page.ask(FAILING)) == []
-    finally:
-        page.press("unkeep")
-        page.ask("for (const id of ['begin', 'add']) byId(id).open = false; byId('with-file').hidden = true")
-        page.browser.size(1280, 800)
+    page.worked("solid")
+    assert page.ask("byId('solid-figure').hidden") is False
+    for opened, over in ((False, "110"), (True, "250")):
+        page.ask(f"for (const id of ['begin', 'add']) byId(id).open = {json.dumps(opened)}")
+        page.ask(f"byId('with-file').hidden = {json.dumps(not opened)}")
+        page.wait(f"{json.dumps(not opened)} || byId('starters').children.length > 9")
+        page.enter("cam.motion[0].over", over)
+        for width in (390, 1280):
+            for dark in (False, True):
+                page.browser.size(width, 844, dark=dark)
+                page.ask(GONE_OVER)
+                assert json.loads(page.ask(FAILING)) == []

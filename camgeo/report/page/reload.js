@@ -1,7 +1,7 @@
 "use strict";
 // A page that is watched: it reloads where the recipe was exported anew, and shows what is wrong with one that was not.
 (() => {
-  let seen = null;
+  const served = Number(document.currentScript.dataset.version); // a newer one may be there before the first event
   const box = document.createElement("pre");
   box.id = "fault";
   box.setAttribute("role", "alert");
@@ -15,12 +15,9 @@
   const events = new EventSource("/events");
   events.onmessage = (message) => {
     const event = JSON.parse(message.data);
-    const first = seen === null;
-    const changed = seen !== event.version;
-    seen = event.version;
     box.hidden = !event.fault;
     box.textContent = event.fault;
-    if (first || !changed || event.fault) return;
+    if (event.version === served || event.fault) return;
     const { at, key, playing } = document.documentElement.dataset;
     if (at) history.replaceState(null, "", `#${key}=${at}${playing === "true" ? "&play" : ""}`);
     location.reload();

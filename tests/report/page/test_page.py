@@ -25,7 +25,7 @@ from xml.etree import ElementTree as ET
 import numpy as np
 import pytest
 from support.cases import few
-from support.pages import RECIPES, SHAFT, SHOWN, Made, fetched, of, told, unpacked, wait
+from support.pages import RECIPES, SHAFT, SHOWN, Made, fetched, of, put, told, unpacked, wait
 
 from camgeo.cli.main import main
 from camgeo.cli.report import add_arguments
@@ -767,13 +767,7 @@ def test_files_that_draw_the_same_are_one_error(tmp_path: Path) -> None:
 
 def test_the_watch_serves_each_version_and_goes_on_after_a_fault(tmp_path: Path) -> None:
     path = tmp_path / "a.yaml"
-
-    def put(text: str) -> None:
-        """At once: the watch would serve what it finds between an emptied file and its text."""
-        (tmp_path / "new").write_text(text, encoding="utf-8")
-        (tmp_path / "new").replace(path)
-
-    put("1")
+    put(path, "1")
     address: list[str] = []
     stop = threading.Event()
 
@@ -793,23 +787,24 @@ def test_the_watch_serves_each_version_and_goes_on_after_a_fault(tmp_path: Path)
         wait(lambda: bool(address))
         wait(lambda: "<p>1 connect-src 'self'</p>" in fetched(address[0]))
         assert "EventSource" in fetched(address[0])
+        assert '<script data-version="1">' in fetched(address[0])
         with pytest.raises(urllib.error.HTTPError, match="403"):  # another site's name that leads here
             urllib.request.urlopen(
                 urllib.request.Request(address[0], headers={"Host": "elsewhere.example:80"}), timeout=20
             )
         with urllib.request.urlopen(address[0] + "events", timeout=20) as stream:
             assert told(stream)["fault"] == ""
-            put("?")
+            put(path, "?")
             assert told(stream)["fault"] == "half"
             assert "<p>1 " in fetched(address[0])  # the last good page stays
-            put("22")
+            put(path, "22")
             assert told(stream) == {"version": 3, "fault": ""}
         assert "<p>22 " in fetched(address[0])
         with pytest.raises(urllib.error.HTTPError):
             fetched(address[0] + "etc/passwd")
     finally:
         stop.set()
-        put("333")
+        put(path, "333")
         thread.join(20)
     assert not thread.is_alive()
     with pytest.raises(urllib.error.URLError):
@@ -829,10 +824,10 @@ def test_a_watch_by_the_command_ends_with_130_on_an_interrupt(tmp_path: Path) ->
         address = process.stdout.readline().split()[2]
         assert "small: ok" in process.stdout.readline()
         wait(lambda: "<h1>small</h1>" in fetched(address))
-        path.write_text("cam: {kind: support, p: 25 + cos(3*t\n", encoding="utf-8")
+        put(path, "cam: {kind: support, p: 25 + cos(3*t\n")
         assert process.stderr is not None
         assert "small.yaml:" in process.stderr.readline()
-        path.write_text("cam: {kind: support, p: 26 + cos(3*t)}\n", encoding="utf-8")
+        put(path, "cam: {kind: support, p: 26 + cos(3*t)}\n")
         assert "small: ok" in process.stdout.readline()
         wait(lambda: "26 + cos" in fetched(address))
         process.send_signal(signal.SIGINT)
@@ -864,10 +859,10 @@ def test_a_camshaft_is_watched_with_its_lobes(tmp_path: Path) -> None:
         assert "shaft: ok" in process.stdout.readline()
         wait(lambda: "<h1>shaft</h1>" in fetched(address))
         assert "EventSource" in fetched(address)
-        lobe.write_text(text.replace("30", "-30"), encoding="utf-8")
+        put(lobe, text.replace("30", "-30"))
         assert "shaft.yaml:1:" in (fault := process.stderr.readline())
         assert "lobe.yaml:1:32: cam.base_radius: not above 0, given -30" in fault
-        lobe.write_text(text.replace("30", "31"), encoding="utf-8")
+        put(lobe, text.replace("30", "31"))
         assert "shaft: ok" in process.stdout.readline()
     finally:
         process.kill()

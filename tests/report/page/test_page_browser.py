@@ -14,7 +14,7 @@ from xml.etree import ElementTree as ET
 import numpy as np
 import pytest
 from support.browser import Browser, executable
-from support.pages import SHAFT, SHOWN, Made, fetched, of, wait
+from support.pages import SHAFT, SHOWN, Made, fetched, of, put, wait
 from support.rendered import rendered, share
 
 import camgeo
@@ -329,6 +329,16 @@ def test_on_a_phone_the_drawing_stays_in_sight(browser: Browser, tmp_path: Path)
         browser.size(1280, 800)
 
 
+LATE = """(() => {
+  const Plain = EventSource;
+  window.EventSource = function (address) {
+    window.hear = () => {
+      new Plain(address).onmessage = (message) => this.onmessage(message);
+    };
+  };
+})()"""
+
+
 @pytest.mark.slow
 def test_a_watched_page_reloads_itself_where_it_stood_and_shows_a_fault(browser: Browser, tmp_path: Path) -> None:
     path = tmp_path / "a.yaml"
@@ -357,17 +367,25 @@ def test_a_watched_page_reloads_itself_where_it_stood_and_shows_a_fault(browser:
         browser.wait("document.getElementById('fault')?.hidden")
         assert browser.ask("document.querySelectorAll('th a').length") > 0
         assert browser.ask("document.querySelectorAll('th a[href]').length") == 0  # the server has no files
-        path.write_text("half", encoding="utf-8")
+        put(path, "half")
         browser.wait("document.getElementById('fault').textContent === 'a.yaml:1:1: <nothing>'")
         assert not browser.ask("document.getElementById('fault').hidden")
-        path.write_text(text.replace("<h1>shu-wu</h1>", "<h1>another</h1>"), encoding="utf-8")
+        put(path, text.replace("<h1>shu-wu</h1>", "<h1>another</h1>"))
         browser.wait("document.querySelector('h1')?.textContent === 'another'")
         browser.wait("document.documentElement.dataset.at === '45.0000'")
+        # saved again before the page hears of anything
+        late = browser.call("Page.addScriptToEvaluateOnNewDocument", source=LATE)["identifier"]
+        browser.open(address[0] + "#deg=45")
+        put(path, text.replace("<h1>shu-wu</h1>", "<h1>third</h1>"))
+        wait(lambda: "<h1>third</h1>" in fetched(address[0]))
+        browser.call("Page.removeScriptToEvaluateOnNewDocument", identifier=late)
+        browser.ask("hear()")
+        browser.wait("document.querySelector('h1')?.textContent === 'third'")
         assert browser.problems == []
         browser.call("Page.navigate", url="about:blank")
     finally:
         stop.set()
-        path.write_text("", encoding="utf-8")
+        put(path, "")
         thread.join(20)
     assert not thread.is_alive()
 
