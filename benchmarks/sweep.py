@@ -244,7 +244,8 @@ def engines() -> None:
                     print(f"{count:8,} {engine.split(':')[0]:24} {spent[0]:8.2f} {row} {sum(spent):6.2f}", flush=True)
         finally:
             for each in reversed(cluster):
-                each.process.terminate()
+                each.process.kill()  # a worker that loses its scheduler as it is asked to end may stay
+                each.process.wait()
 
 
 SOME = ("dwell", "margin", "shaft-rate", "transmission-angle", "swing")
