@@ -14,6 +14,8 @@ it measured stands in `camgeo.capabilities.sweep.screen`. `accuracy` does so for
 from __future__ import annotations
 
 import argparse
+import contextlib
+import json
 import math
 import os
 import subprocess
@@ -200,28 +202,37 @@ class Running:
         return self.seconds()
 
 
-ADDRESS = "tcp://127.0.0.1:8799"
-SECONDS_TO_START = 6.0  # of a scheduler, or a worker, at most, on a busy machine
+def listening(scheduler: Running, file: Path) -> str:
+    """Address of a scheduler that writes itself into a file, once it listens; SystemExit where it ended instead."""
+    while True:
+        if scheduler.process.poll() is not None:
+            raise SystemExit(f"the scheduler ended with status {scheduler.process.returncode}")
+        with contextlib.suppress(OSError, ValueError):  # it is not there, or not whole
+            return str(json.loads(file.read_text())["address"])
+        time.sleep(0.1)
 
 
 def engines() -> None:
     """Processor seconds of one sweep by engine; needs Linux and the extra `dask`."""
+    from distributed import Client
+
     small, large = (500, 2_000) if SMALL else (20_000, 100_000)
     print("\n`camgeo sweep --fresh`, four-bars, 360 angles: processor seconds, the least of several runs")
     print(f"{'designs':>8} {'engine':24} {'command':>8} {'scheduler':>10} {'workers':>14} {'all':>6}")
     with tempfile.TemporaryDirectory() as folder:
-        options = ("--host", "127.0.0.1", "--port", ADDRESS.rpartition(":")[2], "--no-dashboard")
+        options = ("--host", "127.0.0.1", "--port", "0", "--no-dashboard", "--scheduler-file", "scheduler.json")
         cluster = [Running(folder, "distributed.cli.dask_scheduler", *options)]
-        time.sleep(SECONDS_TO_START)
-        options = (ADDRESS, "--nthreads", "1", "--no-nanny", "--no-dashboard")
-        cluster += [Running(folder, "distributed.cli.dask_worker", *options) for _ in range(2)]
-        time.sleep(SECONDS_TO_START)
         try:
+            address = listening(cluster[0], Path(folder) / "scheduler.json")
+            options = (address, "--nthreads", "1", "--no-nanny", "--no-dashboard")
+            cluster += [Running(folder, "distributed.cli.dask_worker", *options) for _ in range(2)]
+            with Client(address) as client:
+                client.wait_for_workers(2)
             for count in (small, large):
                 (Path(folder) / f"of-{count}.yaml").write_text(search_text(LIMITS, count))
                 least: dict[str, list[float]] = {}
                 for _ in range(1 if SMALL else 3):
-                    for engine in ("--jobs 1", "--jobs 2", f"--scheduler {ADDRESS}"):
+                    for engine in ("--jobs 1", "--jobs 2", f"--scheduler {address}"):
                         before = [each.seconds() for each in cluster]
                         call = ("camgeo", "sweep", f"of-{count}.yaml", "--fresh", *engine.split())
                         spent = [Running(folder, *call).finish()]
@@ -233,7 +244,8 @@ def engines() -> None:
                     print(f"{count:8,} {engine.split(':')[0]:24} {spent[0]:8.2f} {row} {sum(spent):6.2f}", flush=True)
         finally:
             for each in reversed(cluster):
-                each.process.terminate()
+                each.process.kill()  # a worker that loses its scheduler as it is asked to end may stay
+                each.process.wait()
 
 
 SOME = ("dwell", "margin", "shaft-rate", "transmission-angle", "swing")

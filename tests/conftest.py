@@ -6,7 +6,8 @@ of n; the others are slow. A table of n cams by n faults so has each fault once,
 Parts: `-m slow --part 2/8` runs an eighth of the slow tests, and an eighth of the rows of each long table. `.ci/run`
 runs as many parts as there is time for, and begins with another one for each commit.
 
-Property tests: a run repeats the last one's examples, so that a change is judged by what it changes;
+Property tests: a run repeats the last one's examples, so that a change is judged by what it changes, whatever tests
+ran before in the same process: constants of the modules that are imported by then are no examples.
 `HYPOTHESIS_PROFILE=explore` looks for new ones, and what it finds becomes an example of its own. A quick run takes an
 eighth of them; any other, such as `pytest -m slow`, takes all, and every property test counts as slow in it.
 
@@ -28,6 +29,7 @@ from typing import TYPE_CHECKING
 import mpmath
 import pytest
 from hypothesis import HealthCheck, settings
+from hypothesis.internal.conjecture import providers
 from support.cases import FULL, left_to_other_parts, thinned_out
 from support.designs import share
 
@@ -51,6 +53,7 @@ if signal.getsignal(signal.SIGINT) is signal.SIG_IGN:
 QUICK = "not slow"
 DIGITS = 50  # of mpmath
 UNTIMED = settings(deadline=None, suppress_health_check=[HealthCheck.too_slow])  # a busy machine is no fault
+providers.is_local_module_file = lambda _: False  # type: ignore[assignment]
 settings.register_profile("quick", UNTIMED, derandomize=True, max_examples=FULL // 8)
 settings.register_profile("repeat", UNTIMED, derandomize=True, max_examples=FULL)
 settings.register_profile("explore", UNTIMED, max_examples=FULL)

@@ -46,8 +46,9 @@ def _all_is_imported(tmp_path_factory: pytest.TempPathFactory) -> None:
 
 
 @pytest.fixture
-def project(pytester: Pytester) -> Pytester:
-    """A project that names its recipes, with one recipe that holds."""
+def project(pytester: Pytester, monkeypatch: pytest.MonkeyPatch) -> Pytester:
+    """A project that names its recipes, with one recipe that holds; no line of its results is cut."""
+    monkeypatch.setenv("COLUMNS", "200")
     pytester.makeini(INI)
     add(pytester, "small", SMALL)
     return pytester

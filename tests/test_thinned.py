@@ -1,9 +1,12 @@
-"""Rows that a quick run takes of a test: each value of each parameter, always the first; and parts of slow runs."""
+"""What a quick run takes of a table: each value of each parameter, always the first; parts of slow runs; examples."""
 
+from importlib import import_module
 from itertools import product
 from types import SimpleNamespace
 
 import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
 from support.cases import left_to_other_parts, thinned_out
 
 CAMS, FAULTS = ("yoke", "rollers", "pair"), ("turned", "moved", "scaled", "mirrored")
@@ -57,3 +60,21 @@ def test_every_slow_test_is_in_one_part_and_rows_of_a_table_in_all():
     assert sorted(one.nodeid for part in taken for one in part) == sorted(one.nodeid for one in [*rows, *single])
     assert all(one not in others for others in left for one in fast)
     assert left_to_other_parts(rows, 1, 1) == []
+
+
+def test_examples_are_the_same_whatever_was_imported_before(tmp_path, monkeypatch):
+    """Else they would depend on the tests that one process ran before, and on how many processes there are."""
+    (tmp_path / "module_of_constants.py").write_text(f"CONSTANTS = {[*range(10**6, 10**6 + 50)]}\n")
+    monkeypatch.syspath_prepend(tmp_path)
+    runs = []
+
+    @settings(max_examples=60)
+    @given(st.integers())
+    def example(number):
+        runs[-1].append(number)
+
+    for _ in range(2):
+        runs.append([])
+        example()
+        import_module("module_of_constants")
+    assert runs[0] == runs[1]

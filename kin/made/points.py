@@ -31,6 +31,7 @@ Datum: TypeAlias = Literal["part", "bore", "none"]
 FREE: dict[Datum, str] = {"part": "", "bore": "g", "none": "gxy"}
 """What may be turned (g) and shifted (x, y) about the axes that each datum fixes."""
 STEPS = 16  # of placing and taking feet anew
+TIED = 1e-9  # share of the greatest deviation within which two are equal but for rounding
 STILL = 1e-10  # rad, and share of the size: a step that changes nothing
 AT_ONCE = 100_000  # points whose feet are found at a time: memory
 COARSE_TURNS = 120  # angles at which a turn is looked for
@@ -194,6 +195,15 @@ class Profile:
     def greatest(self) -> float:
         """Greatest |e|, mm."""
         return float(np.abs(self.e).max())
+
+    @property
+    def worst(self) -> int:
+        """Index of the greatest |e|; of several, as a placing makes them, the first with too much metal.
+
+        Those that differ by rounding alone count as equal: else the processor would choose.
+        """
+        tied = np.flatnonzero(np.abs(self.e) >= (1.0 - TIED) * self.greatest)
+        return int(tied[np.argmax(self.e[tied] > 0.0)])
 
 
 def profile(surfaces: Sequence[SurfacePoints], datum: Datum) -> Profile:

@@ -5,10 +5,10 @@ from __future__ import annotations
 import json
 import os
 import signal
+import socket
 import subprocess
 import sys
 import threading
-import time
 from pathlib import Path
 
 import pytest
@@ -123,19 +123,23 @@ def test_an_interrupt_that_another_thread_takes_is_put_off_as_well() -> None:
     done = threading.Event()
     thread = threading.Thread(target=done.wait)
     thread.start()
+    taken, told = socket.socketpair()
+    told.setblocking(False)
+    before = signal.set_wakeup_fd(told.fileno())
     reached = []
 
     def steps() -> None:
         with system.uninterrupted():
             signal.pthread_kill(thread.ident, signal.SIGINT)
-            for _ in range(100):
-                time.sleep(0.001)
-            reached.append(True)
+            reached.append(taken.recv(1))  # once the thread has it
 
     try:
         with pytest.raises(KeyboardInterrupt):
             steps()
     finally:
+        signal.set_wakeup_fd(before)
         done.set()
         thread.join()
-    assert reached
+        taken.close()
+        told.close()
+    assert reached == [bytes([signal.SIGINT])]

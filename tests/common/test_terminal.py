@@ -32,7 +32,7 @@ def recipe(tmp_path: Path) -> Path:
     return path
 
 
-def run(*arguments: str, **options: object) -> subprocess.CompletedProcess[bytes]:
+def run(*arguments: str | bytes, **options: object) -> subprocess.CompletedProcess[bytes]:
     given = {"capture_output": True} | options
     return subprocess.run([sys.executable, "-m", "camgeo", *arguments], check=False, **given)
 
@@ -51,7 +51,8 @@ def test_a_narrow_encoding(recipe: Path, encoding: str, what: str) -> None:
 
 
 def test_a_name_that_the_encoding_has_not() -> None:
-    done = run("check", "日本.yaml", env=os.environ | {"PYTHONIOENCODING": "ascii"})
+    given = {"PYTHONIOENCODING": "ascii", "PYTHONUTF8": "1"}  # words of a call are UTF-8 in any locale
+    done = run("check", "日本.yaml".encode(), env=os.environ | given)
     assert (done.returncode, done.stderr) == (2, b"\\u65e5\\u672c.yaml: the file does not exist\n")
 
 

@@ -97,8 +97,8 @@ def double(number: int) -> int:
 
 
 def forever(path: str) -> None:
-    Path(path).write_text(str(os.getpid()), encoding="utf-8")
     try:
+        Path(path).write_text(str(os.getpid()), encoding="utf-8")  # from then on it may end at any moment
         while True:
             time.sleep(0.01)
     finally:

@@ -477,8 +477,10 @@ def test_killed_at_random_moments(tmp_path):
     for _ in range(35):
         command = [sys.executable, sets.__file__, "on", str(tmp_path), str(last + 1)]
         with subprocess.Popen(command, stdout=subprocess.PIPE, text=True) as writer:
-            done = int(writer.stdout.readline())  # it is at work
-            time.sleep(chance.uniform(0.0, 0.02))
+            for _ in range(chance.randint(2, 3)):
+                begun = time.monotonic()
+                done = int(writer.stdout.readline())
+            time.sleep(chance.random() * (time.monotonic() - begun))  # somewhere in the next set
             writer.send_signal(signal.SIGKILL)
             told = [int(line) for line in writer.stdout.read().split()]
         done = told[-1] if told else done

@@ -21,12 +21,12 @@ from camgeo.registry.slot import Slot
 from kin.numeric.records import dataclass
 
 CAMGEO = ROOT / "camgeo"
-FOLDERS = [folder for folder in (CAMGEO / "capabilities").iterdir() if (folder / "__init__.py").is_file()]
+FOLDERS = sorted(path.parent for path in (CAMGEO / "capabilities").glob("*/__init__.py"))
 
 
 def slots():
     """Every question, by its name."""
-    asking = [path for path in CAMGEO.rglob("*.py") if "Slot(" in path.read_text(encoding="utf-8")]
+    asking = sorted(path for path in CAMGEO.rglob("*.py") if "Slot(" in path.read_text(encoding="utf-8"))
     modules = [import_module(".".join(path.relative_to(ROOT).with_suffix("").parts)) for path in asking]
     return {one.name: one for module in modules for one in vars(module).values() if isinstance(one, Slot)}
 

@@ -235,7 +235,7 @@ def checks_of(recipe: Recipe, result: PartMade, options: PointOptions) -> tuple[
     if zone is not None:
         for disc in result.discs:
             off, name = np.abs(disc.profile.e), name_of(disc.part)
-            worst = int(np.argmax(off))
+            worst = disc.profile.worst
             parameter = np.concatenate([deviation.parameter for deviation in disc.profile.deviations])
             at = disc.surfaces[0].gauge.shaft_angle(parameter[worst : worst + 1])[0]
             check, verdict = _held(PROFILE.name, 2.0 * off, 2.0 * disc.uncertain, zone, unit="mm", at=at)

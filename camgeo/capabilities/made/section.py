@@ -85,7 +85,7 @@ def add_figures(entry: dict[str, Any], recipe: Recipe, design: Design, result: P
 def _disc(recipe: Recipe, disc: DiscMade) -> dict[str, Any]:
     """Report entry of one disc: its profile, placings, causes and cure, lengths in the recipe's unit."""
     mm, profile = recipe.mm, disc.profile
-    worst = int(np.argmax(np.abs(profile.e)))
+    worst = profile.worst
     surface, index = _surface_of(disc, worst)
     parameter = profile.deviations[surface].parameter[index : index + 1]
     gauge = disc.surfaces[surface].gauge

@@ -152,7 +152,7 @@ def test_lifts_of_a_machine_in_phase(machine: tuple[str, camgeo.Report]) -> None
     lobes = dict(report)["camshaft"]["lobes"]
     assert [lobe["at_deg"] for lobe in lobes] == pytest.approx([0, 165, 250])
     assert [lobe["zero_deg"] for lobe in lobes] == pytest.approx([0, 75, 310])
-    assert "lifts over the shaft" in (report.path / "shaft.svg").read_text()
+    assert "lifts over the shaft" in (report.path / "shaft.svg").read_text(encoding="utf-8")
 
 
 @pytest.mark.slow

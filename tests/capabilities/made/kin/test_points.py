@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
+from types import SimpleNamespace
+
 import numpy as np
 import pytest
 from support.disc_followers import FOLLOWERS
 
 from kin.contour.arcs import left
-from kin.made.points import SurfacePoints
+from kin.made.points import Profile, SurfacePoints
 
 BALL = 2.0
 AT = np.radians([20.0, 50.0, 123.0, 200.0])
@@ -44,3 +46,12 @@ def test_balls_read_the_waves_as_they_touch_them():
     assert found.e == pytest.approx(0.05 * np.sin(20.0 * found.parameter), abs=1e-9)
     assert found.e == pytest.approx(BY_NORMAL, abs=5e-9)  # the place of a maximum is known to half the digits
     assert np.mod(np.degrees(found.parameter), 360.0) == pytest.approx(BY_NORMAL_AT, abs=1e-6)
+
+
+@pytest.mark.parametrize("rounding", [-1e-12, 0.0, 1e-12])
+def test_of_places_that_a_placing_makes_equal_the_first_with_too_much_metal_is_the_worst(rounding):
+    """Which of them is greater by rounding depends on the processor."""
+    parts = ([0.001, -0.011 * (1.0 + rounding)], [0.011, 0.011 * (1.0 + rounding), 0.002])
+    deviations = tuple(SimpleNamespace(e=np.array(part)) for part in parts)
+    assert Profile("bore", "g", None, deviations, None, None, None).worst == 2
+    assert Profile("bore", "", None, deviations[:1], None, None, None).worst == 1
