@@ -34,6 +34,7 @@ from kin.numeric.errors import UnsettledError
 from kin.numeric.lengths import UNIT, amount_words, length_words
 from kin.numeric.limits import is_loose, limit_of, unlimited
 from kin.numeric.records import dataclass, replace
+from kin.turned.checks import assured, surface_check
 from kin.turned.files import closed_mesh, face_check, rounding_of, verify_lines, verify_mesh, volume_check
 from kin.turned.verdict import CONTOUR, ENDS, MOTION, PLAY, FlankVerdict, TurnedVerdict
 
@@ -52,7 +53,6 @@ if TYPE_CHECKING:
     from kin.turned.files import Developed
 
 CROSSINGS, SHOE = "crossings", "shoe"
-OPEN = 0.25  # of the tolerance: what the proof may leave open, and is told
 ROUNDED = 1e-4  # by which a length that is told is shorter, so that its digits are
 SLACK = 1e-6  # of a limit that follows from the steepest slope
 
@@ -199,13 +199,7 @@ def stretches(held: Mask, width: float) -> tuple[tuple[float, float], ...]:
 
 def contour_check(job: Judged, proud: Peak, bare: Peak) -> tuple[Check, float]:
     """Check of the distance of a flank's surface, mm, out of the metal and into it, and the greater distance."""
-    tolerance = job.limits.tolerance
-    worst = max(assured(peak.value, peak.remainder, tolerance) for peak in (proud, bare))
-    words = " and ".join(
-        f"{length_words(max(peak.value, 0.0), '.3g')} {UNIT} {way}" for peak, way in ((proud, "proud"), (bare, "bare"))
-    )
-    told = f"true within {length_words(max(proud.remainder, bare.remainder), '.2g')} {UNIT}"
-    check = at_most(CONTOUR, worst, tolerance, "mm", detail=f"{words} of the exact flank; {told}", slack=job.slack)
+    check, worst = surface_check(proud, bare, job.limits.tolerance, job.slack)
     return placed(check, proud.at if proud.value >= bare.value else bare.at, job.drum.follower.turns), worst
 
 
@@ -241,11 +235,6 @@ def motion_check(job: Judged, motion: MotionError, gauge: Gauge, free: tuple[tup
 def _given(job: Judged, limit: float | None) -> float | None:
     """A limit that is given, mm or rad, in the unit of positions."""
     return None if limit is None else job.drum.follower.in_unit(limit)
-
-
-def assured(value: float, remainder: float, tolerance: float) -> float:
-    """A value found, mm, or its bound where the proof leaves more open than a share of the tolerance."""
-    return value if remainder <= OPEN * tolerance else value + remainder
 
 
 def _implied(gauge: Gauge, tolerance: float) -> float:

@@ -16,14 +16,14 @@ import numpy as np
 
 from kin.cylindrical.gauge import gauges_of
 from kin.cylindrical.intent import Groove
-from kin.cylindrical.judge import Judged, assured, motion_check
+from kin.cylindrical.judge import Judged, motion_check
 from kin.law.motion_error import MotionError
 from kin.numeric.check import ROUNDING, Check, at_most, failed
 from kin.numeric.errors import UnsettledError
 from kin.numeric.lengths import UNIT, length_words
 from kin.numeric.records import replace
 from kin.read.checks import count_check
-from kin.turned.checks import Work, astray, cleared_check, cutter_check, depth_check, feed_check, rapid_check
+from kin.turned.checks import Work, assured, astray, cleared_check, cutter_check, depth_check, feed_check, rapid_check
 from kin.turned.cutters import END, finest_on, left_on
 from kin.turned.files import verify_moves
 from kin.turned.verdict import CONTOUR, FlankVerdict, TurnedVerdict
@@ -144,7 +144,7 @@ def _flank(job: Judged, gauge: Gauge, passes: list[Pass], cutting: Cutting) -> t
     most, least = max(float(left.off.max()), 0.0), max(-float(left.off.min()), 0.0)
     words = f"{length_words(most, '.3g')} {UNIT} left and {length_words(least, '.3g')} {UNIT} too deep"
     detail = f"{words}; true within {length_words(remainder, '.2g')} {UNIT}"
-    value = worst if worst > tolerance else assured(worst, remainder, tolerance)
+    value = assured(worst, remainder, tolerance)
     check = replace(at_most(CONTOUR, value, tolerance, "mm", detail=detail, slack=job.slack), at=_angle(at))
     motion = _motion(gauge, left).scaled(job.per_mm, job.unit)
     return FlankVerdict(gauge.name, motion, worst), [

@@ -30,6 +30,7 @@ from kin.numeric.errors import UnsettledError
 from kin.numeric.lengths import UNIT, amount_words, length_words
 from kin.numeric.limits import is_loose, limit_of, unlimited
 from kin.numeric.records import dataclass, replace
+from kin.turned.checks import assured, surface_check
 from kin.turned.files import closed_mesh, face_check, rounding_of, verify_lines, verify_mesh, volume_check
 from kin.turned.verdict import CONTOUR, ENDS, MOTION, PLAY, FlankVerdict, TurnedVerdict
 
@@ -46,8 +47,6 @@ if TYPE_CHECKING:
     from kin.numeric.limits import Limits
     from kin.read.mesh.checked import CheckedMesh
     from kin.turned.files import Developed
-
-OPEN = 0.25  # of the tolerance: what the proof may leave open, and is told
 
 
 def verify(path: Path, intent: IndexIntent, limits: Limits, units: float | None = None) -> TurnedVerdict:
@@ -233,15 +232,7 @@ def _least(offs: dict[str, Array]) -> Array:
 
 def contour_check(out: Peak, within: Peak, tolerance: float, slack: float) -> tuple[Check, float]:
     """Check of the distance of a flank's surface, mm, out of the metal and into it, and the greater distance."""
-    worst = max(_assured(peak.value, peak.remainder, tolerance) for peak in (out, within))
-    words = " and ".join(
-        f"{length_words(max(peak.value, 0.0), '.3g')} {UNIT} {way}" for peak, way in ((out, "proud"), (within, "bare"))
-    )
-    left = max(out.remainder, within.remainder)
-    told = (
-        f"true within {length_words(left, '.2g')} {UNIT}" if math.isfinite(left) else "other places were not measured"
-    )
-    check = at_most(CONTOUR, worst, tolerance, "mm", detail=f"{words} of the exact flank; {told}", slack=slack)
+    check, worst = surface_check(out, within, tolerance, slack)
     at = out.at if out.value >= within.value else within.at
     return replace(check, at=degrees(at) if math.isfinite(at) else None), worst
 
@@ -262,7 +253,7 @@ def motion_check(rollers: Rollers, motion: MotionError, limits: Limits, slack: f
     given = None if limits.motion is None else math.degrees(limits.motion)
     cost = math.degrees(cost)
     limit, room = limit_of(lambda e: e * cost, given, limits.tolerance, slack)
-    worst = _assured(motion.max, motion.remainder, cost * limits.tolerance) if given is None else motion.bound
+    worst = assured(motion.max, motion.remainder, cost * limits.tolerance) if given is None else motion.bound
     detail = f"true within {amount_words(motion.remainder, 'deg', '.2g')}" if motion.remainder else ""
     check = replace(at_most(MOTION, worst, limit, "deg", detail=detail, slack=room), at=motion.at)
     direct = math.degrees(limits.tolerance / rollers.intent.form.lever)
@@ -288,11 +279,3 @@ def play_of(rollers: Rollers, limits: Limits, slack: float, flanks: tuple[Held, 
     k = int(pinched.argmax())
     check = at_most(PLAY, float(pinched[k]), limit, "deg", detail=told, slack=room)
     return play, replace(check, at=degrees(k * TURN / count))
-
-
-def _assured(value: float, remainder: float, tolerance: float) -> float:
-    """A value found, or its bound where the proof leaves more open than a share of the tolerance, all in one unit.
-
-    A value above the tolerance is enough by itself.
-    """
-    return value if value > tolerance or remainder <= OPEN * tolerance else value + remainder
