@@ -477,7 +477,7 @@ def test_a_reload_and_a_link_keep_the_recipe_with_its_tables(page: tab.Tab) -> N
     page.load("disc-table", TEXTS["disc-table.yaml"])  # without its table, which is of another recipe
     assert "disc-table.csv" in page.text_of("faults")
     page.ask(f"location.hash = {link!r}")
-    page.wait("recipe.name === 'disc-table'")
+    page.wait("'disc-table.csv' in recipe.tables")
     page.settle()
     assert page.text_of("faults") == ""
 
