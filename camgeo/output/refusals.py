@@ -38,7 +38,7 @@ def refusals(recipe: Order, request: FileRequest, words: Callable[[str], str] = 
 def demand_flanks(recipe: Order, request: FileRequest, depth: float) -> None:
     """Raise RecipeErrors for a solid within a tolerance above half the depth of its flanks, mm.
 
-    Whoever reads such a file cannot tell flanks from what is about them.
+    In such a file the flanks may be missing.
     """
     tolerance, mm, units = recipe.tolerance(request), recipe.mm, recipe.units
     if request.format.solid and tolerance > 0.5 * depth:

@@ -25,7 +25,7 @@ JOINT = 1e-9  # rad: angles that differ by less are one
 FEED = 0.01  # of a feed, by which it may differ: more than words of few digits round by, less than a hand sets
 LEAST = 1e-6  # of the cutter's diameter, by which what a program names may differ
 LEAST_TAPER = 1e-6  # degrees, by which the half angle of a cutter may differ
-OPEN = 0.25  # of the tolerance: what a proof may leave open, and is told
+OPEN = 0.25  # of the tolerance: what a proof may leave open
 _CUTTER = re.compile(r"^cutter: diameter ([0-9.]+)(?: at its end, half angle ([0-9.]+) degrees)?")
 
 
