@@ -34,9 +34,8 @@ from kin.numeric.errors import UnsettledError
 from kin.numeric.lengths import UNIT, amount_words, length_words
 from kin.numeric.limits import is_loose, limit_of, unlimited
 from kin.numeric.records import dataclass, replace
-from kin.turned.checks import assured, surface_check
 from kin.turned.files import closed_mesh, face_check, rounding_of, verify_lines, verify_mesh, volume_check
-from kin.turned.verdict import CONTOUR, ENDS, MOTION, PLAY, FlankVerdict, TurnedVerdict
+from kin.turned.verdict import CONTOUR, ENDS, MOTION, PLAY, FlankVerdict, TurnedVerdict, assured, surface_check
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence

@@ -23,10 +23,10 @@ from kin.numeric.errors import UnsettledError
 from kin.numeric.lengths import UNIT, length_words
 from kin.numeric.records import replace
 from kin.read.checks import count_check
-from kin.turned.checks import Work, assured, astray, cleared_check, cutter_check, depth_check, feed_check, rapid_check
+from kin.turned.checks import Work, astray, cleared_check, cutter_check, depth_check, feed_check, rapid_check
 from kin.turned.cutters import END, finest_on, left_on
 from kin.turned.files import verify_moves
-from kin.turned.verdict import CONTOUR, FlankVerdict, TurnedVerdict
+from kin.turned.verdict import CONTOUR, FlankVerdict, TurnedVerdict, assured
 
 if TYPE_CHECKING:
     from collections.abc import Sequence

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 import re
-from typing import TYPE_CHECKING, NamedTuple, Protocol
+from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
@@ -13,7 +13,6 @@ from kin.numeric.lengths import UNIT, length_words
 from kin.numeric.records import dataclass
 from kin.read.checks import count_check
 from kin.turned.cutters import END
-from kin.turned.verdict import CONTOUR
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -25,44 +24,7 @@ JOINT = 1e-9  # rad: angles that differ by less are one
 FEED = 0.01  # of a feed, by which it may differ: more than words of few digits round by, less than a hand sets
 LEAST = 1e-6  # of the cutter's diameter, by which what a program names may differ
 LEAST_TAPER = 1e-6  # degrees, by which the half angle of a cutter may differ
-OPEN = 0.25  # of the tolerance: what a proof may leave open
 _CUTTER = re.compile(r"^cutter: diameter ([0-9.]+)(?: at its end, half angle ([0-9.]+) degrees)?")
-
-
-class Peak(Protocol):
-    """Protocol of a greatest distance."""
-
-    @property
-    def value(self) -> float:
-        """The greatest one that was found, mm."""
-        ...
-
-    @property
-    def remainder(self) -> float:
-        """By how much the true one may lie above it, mm."""
-        ...
-
-
-def assured(value: float, remainder: float, tolerance: float) -> float:
-    """A value found, or its bound where the proof leaves more open than a share of the tolerance, all in one unit.
-
-    A value above the tolerance is enough by itself.
-    """
-    return value if value > tolerance or remainder <= OPEN * tolerance else value + remainder
-
-
-def surface_check(proud: Peak, bare: Peak, tolerance: float, slack: float) -> tuple[Check, float]:
-    """Check, without a place, of the distance of a flank's surface, out of the metal and into it; the greater one."""
-    worst = max(assured(peak.value, peak.remainder, tolerance) for peak in (proud, bare))
-    words = " and ".join(
-        f"{length_words(max(peak.value, 0.0), '.3g')} {UNIT} {way}" for peak, way in ((proud, "proud"), (bare, "bare"))
-    )
-    left = max(proud.remainder, bare.remainder)
-    told = (
-        f"true within {length_words(left, '.2g')} {UNIT}" if math.isfinite(left) else "other places were not measured"
-    )
-    detail = f"{words} of the exact flank; {told}"
-    return at_most(CONTOUR, worst, tolerance, "mm", detail=detail, slack=slack), worst
 
 
 @dataclass(frozen=True)

@@ -1,9 +1,12 @@
-"""Results for a file of a turning body whose flanks lead rollers."""
+"""Results for a file of a turning body whose flanks lead rollers, and the check of a flank's surface."""
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+import math
+from typing import TYPE_CHECKING, Protocol
 
+from kin.numeric.check import Check, at_most
+from kin.numeric.lengths import UNIT, length_words
 from kin.numeric.records import dataclass
 from kin.read.verdict import FileVerdict
 
@@ -13,6 +16,7 @@ if TYPE_CHECKING:
     from kin.read.mesh.mesh import Mesh
 
 CONTOUR, MOTION, PLAY, ENDS = "contour", "motion", "form-closure", "ends"
+OPEN = 0.25  # of the tolerance: what a proof may leave open
 
 
 @dataclass(frozen=True, eq=False)
@@ -53,3 +57,39 @@ class TurnedVerdict(FileVerdict):
     units: float | None = None
     mesh: Mesh | None = None
     lines: tuple[tuple[str, Array], ...] = ()
+
+
+class Peak(Protocol):
+    """Protocol of a greatest distance."""
+
+    @property
+    def value(self) -> float:
+        """The greatest one that was found, mm."""
+        ...
+
+    @property
+    def remainder(self) -> float:
+        """By how much the true one may lie above it, mm."""
+        ...
+
+
+def assured(value: float, remainder: float, tolerance: float) -> float:
+    """A value found, or its bound where the proof leaves more open than a share of the tolerance, all in one unit.
+
+    A value above the tolerance is enough by itself.
+    """
+    return value if value > tolerance or remainder <= OPEN * tolerance else value + remainder
+
+
+def surface_check(proud: Peak, bare: Peak, tolerance: float, slack: float) -> tuple[Check, float]:
+    """Check, without a place, of the distance of a flank's surface, out of the metal and into it; the greater one."""
+    worst = max(assured(peak.value, peak.remainder, tolerance) for peak in (proud, bare))
+    words = " and ".join(
+        f"{length_words(max(peak.value, 0.0), '.3g')} {UNIT} {way}" for peak, way in ((proud, "proud"), (bare, "bare"))
+    )
+    left = max(proud.remainder, bare.remainder)
+    told = (
+        f"true within {length_words(left, '.2g')} {UNIT}" if math.isfinite(left) else "other places were not measured"
+    )
+    detail = f"{words} of the exact flank; {told}"
+    return at_most(CONTOUR, worst, tolerance, "mm", detail=detail, slack=slack), worst

@@ -117,7 +117,7 @@ def demand_led(design: DrumDesign) -> None:
         f"whose least radius is {shown(bend.radius)} {units}"
     )
     if design.crossings and (roller.shoe is None or not roller.shoe > made):
-        for request in recipe.export.files:
+        for request in recipe.export.files:  # gaps in a coarse solid are long: its tolerance is at fault first
             demand_flanks(recipe, request, recipe.track.depth)
         problem = f"a wall of the groove is missing over {shown(gap)} {units} where its tracks cross, "
         if roller.shoe is not None and roller.shoe > gap:
